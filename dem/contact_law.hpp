@@ -1,0 +1,37 @@
+#pragma once
+// Linear visco-elastic normal contact, Eq. (1), and its times.
+//   f = k delta + gamma d(delta)/dt along n,  delta = r_i + r_j - |x_ij|,  n = x_ij/|x_ij|,  x_ij = x_i - x_j (nearest images)
+//   d(delta)/dt = -(v_i - v_j + L x_ij) . n   (L velocity gradient of the cell, v fluctuation velocities)
+//   background drag f_b = -gamma_b v_i
+//   t_c = pi/sqrt(k/m_ij - (gamma/2m_ij)^2),  e = exp(-gamma t_c/(2 m_ij)),  m_ij = m_i m_j/(m_i + m_j)
+// A contact exists while delta > 0; its force may turn attractive before it ends. SI units. f > 0 repels.
+
+#include <cmath>
+#include <numbers>
+
+namespace grainlaw::dem {
+
+struct Material {
+  double density = 2000;              ///< rho of the spheres [kg/m^3]
+  double stiffness = 1e8;             ///< k [kg/s^2]
+  double contact_viscosity = 1;       ///< gamma [kg/s]
+  double background_viscosity = 0.1;  ///< gamma_b [kg/s]
+};
+
+/// Mass of a sphere of radius `r` [kg].
+inline double sphere_mass(const Material& m, double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r * m.density; }
+
+inline double reduced_mass(double m_i, double m_j) { return m_i * m_j / (m_i + m_j); }
+
+/// Duration of a free collision [s]; NaN when the contact is overdamped (it never ends by itself).
+inline double collision_time(const Material& m, double m_ij) {
+  const double eta = m.contact_viscosity / (2 * m_ij);
+  return std::numbers::pi / std::sqrt(m.stiffness / m_ij - eta * eta);
+}
+
+/// Coefficient of restitution of a free collision that ends at zero overlap [-].
+inline double restitution(const Material& m, double m_ij) {
+  return std::exp(-m.contact_viscosity * collision_time(m, m_ij) / (2 * m_ij));
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,69 @@
+#pragma once
+// Time integration of a packing in a moving periodic cell: velocity Verlet on the fluctuation velocities.
+//   dx/dt = v + L x, i.e. ds/dt = H^-1 v;   m dv/dt = sum f - gamma_b v;   H(t), L(t) given, not integrated
+// Velocity-dependent forces use the velocity predicted to the end of the step (second order). Energy account by the
+// trapezoidal rule in the same pass. Same bits for any number of threads: each sphere sums its own contacts in the
+// order of its sorted neighbours, totals are summed in blocks of fixed size.
+
+#include <array>
+#include <memory>
+
+#include "dem/neighbour_list.hpp"
+#include "dem/state.hpp"
+#include "dem/thread_team.hpp"
+
+namespace grainlaw::dem {
+
+struct EngineOptions {
+  double time_step_fraction = 0.1;  ///< dt/t_c,min of the actual packing [-]
+  double skin = 0.1;                ///< skin of the neighbour list over the mean radius [-]
+  int threads = 1;                  ///< threads of one run
+};
+
+/// What moves with the cell.
+enum class Transport {
+  homogeneous,  ///< the spheres: dx/dt = v + L x
+  wall,         ///< only the edges: dx/dt = v inside; a sphere that leaves re-enters with its velocity unchanged
+};
+
+/// Cell and velocity gradient at an instant.
+struct CellMotion {
+  Eigen::Matrix3d H = Eigen::Matrix3d::Identity();  ///< cell [m], upper triangular
+  Eigen::Matrix3d L = Eigen::Matrix3d::Zero();      ///< velocity gradient of the cell, dH/dt H^-1 [1/s], upper triangular
+  Transport transport = Transport::homogeneous;
+};
+
+using Row = std::array<double, 4>;
+
+/// A state in motion: the state plus what can be recomputed from it.
+struct Simulation {
+  State state;
+  EngineOptions options;
+  double dt = 0;            ///< time step [s]
+  NeighbourList list;
+  std::uint64_t rebuilds = 0;      ///< of the list since the start of the simulation
+  std::vector<Row> place, motion;  ///< scratch of the force pass: positions with radii, predicted velocities
+  std::shared_ptr<ThreadTeam> team;
+};
+
+/// dt/t_c,min beyond which no run may be started; the integrator becomes unstable between 0.48 and 0.56 for w = 3.
+inline constexpr double kMaxTimeStepFraction = 0.4;
+
+/// Chooses dt = time_step_fraction * t_c,min, builds the list and, for a state without accelerations, the forces for
+/// `motion` (whose H is the state's). Throws InvalidInput when dt is not positive and finite (its size is judged by
+/// those who start runs), the state does not pass check(), or two touching spheres share one position (ids are named).
+Simulation start_simulation(State state, const EngineOptions& options, const CellMotion& motion);
+
+/// One step of length dt: the cell goes from where it is to `half` (at dt/2) and `end` (at dt). Throws Error naming the
+/// sphere when a position or velocity is no longer finite.
+void advance(Simulation& sim, const CellMotion& half, const CellMotion& end);
+
+/// Opens the energy account anew at the current state: ledger zero, E_start taken.
+void open_ledger(Simulation& sim);
+
+double kinetic_energy(const Packing& packing);  ///< of fluctuation velocities [J]
+
+/// (W - dE - D)/(|W| + E_kin(0) + D) since the ledger was opened [-] (hard case D9); 0 when nothing happened.
+double energy_residual(const Simulation& sim);
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,28 @@
+#pragma once
+// A prediction against the DEM test of the same path, row by row at the observed strains.
+//   bias = mean(prediction - DEM),  normalised RMS = RMS(prediction - DEM)/max|DEM|, both over rows with
+//   shear_path >= 0.01 (all rows when the path has no shear)
+
+#include "predict/predict.hpp"
+
+namespace grainlaw::predict {
+
+struct QuantityComparison {
+  std::string quantity;        ///< "P_star", "s_par", "F_par"
+  int rows = 0;
+  double bias = 0;             ///< in the unit of the quantity [-]
+  double rms = 0;              ///< [-]
+  double normalised_rms = 0;   ///< rms/max|DEM| [-]
+  double largest = 0;          ///< prediction - DEM where its magnitude is largest [-]
+  double largest_at_eps_dev = 0, largest_at_nu = 0;  ///< where that is [-]
+};
+
+struct Comparison {
+  std::string test;
+  std::vector<QuantityComparison> quantities;
+};
+
+/// `prediction` was made at points_of(test); rows are paired in order, the prediction may end early.
+Comparison compare(const Prediction& prediction, const TestRecord& test);
+
+}  // namespace grainlaw::predict
