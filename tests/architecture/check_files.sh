@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# check_files.sh ROOT: fails for a source file above 400 lines or with a name that says nothing.
+set -euo pipefail
+
+root=${1:?usage: check_files.sh ROOT}
+max_lines=400
+# A word of a file's or a folder's name, e.g. string_utils.cpp
+empty_names='(^|[/._-])(utils?|commons?|helpers?|misc)([/._-]|$)'
+
+violations=0
+report() {
+  printf '%s: %s\n' "$1" "$2"
+  violations=$((violations + 1))
+}
+
+files=0
+while IFS= read -r -d '' file; do
+  files=$((files + 1))
+  path=${file#"$root"/}
+  lines=$(wc -l <"$file")
+  if ((lines > max_lines)); then
+    report "$path" "$lines lines, at most $max_lines"
+  fi
+  if [[ $path =~ $empty_names ]]; then
+    report "$path" "name it after what it does, not '${BASH_REMATCH[2]}'"
+  fi
+done < <(for room in model dem fit predict app tests examples; do
+  if [[ -d $root/$room ]]; then
+    find "$root/$room" -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.sh' \
+      -o -name '*.cmake' -o -name 'CMakeLists.txt' -o -name '*.py' -o -name '*.js' -o -name '*.css' \
+      -o -name '*.html' -o -name '*.mustache' \) -print0
+  fi
+done)
+
+printf '%d files, %d violations\n' "$files" "$violations"
+((files > 0 && violations == 0))

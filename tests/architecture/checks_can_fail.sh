@@ -1,0 +1,89 @@
+#!/usr/bin/env bash
+# Sows one violation at a time into a small clean tree: each check must name it, and must pass
+# the clean tree.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+failures=0
+
+clean_tree() {
+  rm -rf "${tree:?}"/*
+  mkdir -p "$tree"/{model,dem,fit,predict,app,tests/unit}
+  echo '#include <Eigen/Core>' >"$tree/model/tensor.hpp"
+  echo '#include "model/tensor.hpp"' >"$tree/model/path.hpp"
+  echo '#include "model/tensor.hpp"' >"$tree/model/law.hpp"
+  echo '#include "model/path.hpp"' >"$tree/dem/packing.hpp"
+  printf '#include "dem/packing.hpp"\n#include <vector>\n' >"$tree/dem/packing.cpp"
+  printf '#include "model/law.hpp"\n#include <ceres/ceres.h>\n' >"$tree/fit/calibrate.cpp"
+  printf '#include "model/law.hpp"\n' >"$tree/fit/calibrate.hpp"
+  printf '#include "model/law.hpp"\n#include <cvodes/cvodes.h>\n' >"$tree/predict/predict.cpp"
+  printf '#include "fit/calibrate.hpp"\n#include "dem/packing.hpp"\n#include <grainlaw_build_info.hpp>\n' \
+    >"$tree/app/commands.cpp"
+  seq 400 | sed 's|^|// |' >"$tree/tests/unit/tensor_test.cpp"
+}
+
+# expect CHECK PATTERN: CHECK must fail and name the PATTERN.
+expect() {
+  local output
+  if output=$(bash "$here/$1" "$tree"); then
+    printf 'not caught by %s: %s\n' "$1" "$2"
+    failures=$((failures + 1))
+  elif ! grep -qF "$2" <<<"$output"; then
+    printf '%s failed without naming "%s":\n%s\n' "$1" "$2" "$output"
+    failures=$((failures + 1))
+  fi
+}
+
+# sow FILE INCLUDE PATTERN: adds one forbidden include to the clean tree.
+sow() {
+  clean_tree
+  echo "#include $2" >>"$tree/$1"
+  expect check_includes.sh "$3"
+}
+
+clean_tree
+for check in check_includes.sh check_files.sh; do
+  if ! bash "$here/$check" "$tree"; then
+    echo "$check refuses the clean tree"
+    failures=$((failures + 1))
+  fi
+done
+
+sow model/law.hpp '"dem/packing.hpp"' 'model must not include dem'
+sow dem/packing.hpp '"fit/calibrate.hpp"' 'dem must not include fit'
+sow dem/packing.cpp '"model/law.hpp"' 'dem must not know the law'
+sow model/path.hpp '"model/law.hpp"' 'the vocabulary must not include'
+sow fit/calibrate.cpp '"predict/predict.hpp"' 'fit must not include predict'
+sow predict/predict.cpp '"fit/calibrate.hpp"' 'predict must not include fit'
+sow fit/calibrate.cpp '"dem/packing.hpp"' 'fit must not include dem'
+sow fit/calibrate.hpp '"app/commands.hpp"' 'fit must not include app'
+sow fit/calibrate.hpp '<ceres/ceres.h>' 'belongs to fit/*.cpp only'
+sow predict/predict.cpp '<ceres/ceres.h>' 'belongs to fit/*.cpp only'
+sow app/commands.cpp '<cvodes/cvodes.h>' 'belongs to predict/*.cpp only'
+sow fit/calibrate.cpp '<nvector/nvector_serial.h>' 'belongs to predict/*.cpp only'
+sow dem/packing.cpp '"grainlaw_build_info.hpp"' 'belongs to app/*.cpp only'
+sow dem/packing.cpp 'MACRO' 'cannot read this include'
+sow dem/packing.cpp '"packing.hpp"' 'is not of the form'
+sow dem/packing.cpp '"../model/law.hpp"' 'is not of the form'
+sow dem/packing.cpp '<model/path.hpp>' 'write it in quotes'
+sow app/commands.cpp '"dem/no_such_file.hpp"' 'does not exist'
+sow app/commands.cpp '"tests/unit/tensor_test.cpp"' 'is not of the form'
+
+clean_tree
+echo '// one line more' >>"$tree/tests/unit/tensor_test.cpp"
+expect check_files.sh '401 lines'
+for name in dem/utils.hpp app/string_utils.cpp model/common.hpp tests/helpers.hpp fit/util/a.cpp; do
+  clean_tree
+  mkdir -p "$(dirname "$tree/$name")"
+  touch "$tree/$name"
+  expect check_files.sh "$name: name it after"
+done
+
+rm -rf "${tree:?}"/*
+expect check_includes.sh '0 files'
+expect check_files.sh '0 files'
+
+printf '%d failures\n' "$failures"
+((failures == 0))
