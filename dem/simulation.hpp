@@ -5,9 +5,9 @@
 // trapezoidal rule in the same pass. Same bits for any number of threads: each sphere sums its own contacts in the
 // order of its sorted neighbours, totals are summed in blocks of fixed size.
 
-#include <array>
 #include <memory>
 
+#include "dem/force_pass.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/state.hpp"
 #include "dem/thread_team.hpp"
@@ -33,8 +33,6 @@ struct CellMotion {
   Transport transport = Transport::homogeneous;
 };
 
-using Row = std::array<double, 4>;
-
 /// A state in motion: the state plus what can be recomputed from it.
 struct Simulation {
   State state;
@@ -42,7 +40,7 @@ struct Simulation {
   double dt = 0;            ///< time step [s]
   NeighbourList list;
   std::uint64_t rebuilds = 0;      ///< of the list since the start of the simulation
-  std::vector<Row> place, motion;  ///< scratch of the force pass: positions with radii, predicted velocities
+  std::vector<Row> place, motion, force;  ///< of the force pass: positions with radii, velocities, contact forces
   std::shared_ptr<ThreadTeam> team;
 };
 
@@ -57,6 +55,12 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
 /// One step of length dt: the cell goes from where it is to `half` (at dt/2) and `end` (at dt). Throws Error naming the
 /// sphere when a position or velocity is no longer finite.
 void advance(Simulation& sim, const CellMotion& half, const CellMotion& end);
+
+/// H n [m] of each image of the list.
+std::vector<Eigen::Vector3d> image_shifts(const Simulation& sim);
+
+/// What sums over the contacts of `sim` read; `sim` and `shift` must outlive it. Velocities are those of sim.motion.
+ForceField force_field(const Simulation& sim, const CellMotion& motion, const std::vector<Eigen::Vector3d>& shift);
 
 /// Opens the energy account anew at the current state: ledger zero, E_start taken.
 void open_ledger(Simulation& sim);

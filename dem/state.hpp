@@ -22,11 +22,12 @@ struct Ledger {
   double E_kin_start = 0;   ///< E_kin when the ledger was opened
 };
 
-/// Sums over all contacts, made by the force pass together with the forces.
+/// Totals at the current time, made together with the forces.
 struct PassSums {
   double box_power = 0;      ///< work of the box per time, -V sigma:L [W]
   double contact_power = 0;  ///< dissipation of contact viscosity [W]
   double E_pot = 0;          ///< elastic energy [J]
+  double drag_power = 0;     ///< dissipation of background drag, from the velocities at the end of the step [W]
 };
 
 struct State {

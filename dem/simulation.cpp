@@ -1,0 +1,279 @@
+#include "dem/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "model/error.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+std::pair<std::size_t, std::size_t> block_range(std::size_t block, std::size_t n) {
+  return {block * kBlockSize, std::min(n, (block + 1) * kBlockSize)};
+}
+
+/// Positions with radii for the force pass, from the fractions and the cell.
+void place_spheres(Simulation& sim, std::size_t begin, std::size_t end) {
+  const Packing& p = sim.state.packing;
+  const Eigen::Matrix3d& H = p.H;
+  const double Hxx = H(0, 0), Hxy = H(0, 1), Hxz = H(0, 2), Hyy = H(1, 1), Hyz = H(1, 2), Hzz = H(2, 2);
+  for (std::size_t i = begin; i < end; ++i) {
+    const double sx = p.sx[i], sy = p.sy[i], sz = p.sz[i];
+    sim.place[i] = {Hxx * sx + Hxy * sy + Hxz * sz, Hyy * sy + Hyz * sz, Hzz * sz, p.radius[i]};
+  }
+}
+
+/// New list at the current positions, remembered as the reference.
+void rebuild(Simulation& sim) {
+  Packing& p = sim.state.packing;
+  wrap(p);
+  sim.list = build_list(p, sim.list.skin, *sim.team);
+  sim.state.ref_x = p.sx;
+  sim.state.ref_y = p.sy;
+  sim.state.ref_z = p.sz;
+  sim.state.ref_H = p.H;
+  ++sim.rebuilds;
+  sim.team->for_each_block(block_count(p.size()), [&](std::size_t block) {
+    const auto [begin, end] = block_range(block, p.size());
+    place_spheres(sim, begin, end);
+  });
+}
+
+/// The list as it was at the reference of a continued run.
+void restore_list(Simulation& sim) {
+  Packing reference = sim.state.packing;
+  reference.sx = sim.state.ref_x;
+  reference.sy = sim.state.ref_y;
+  reference.sz = sim.state.ref_z;
+  reference.H = sim.state.ref_H;
+  sim.list = build_list(reference, sim.list.skin, *sim.team);
+}
+
+/// Runs the force pass block by block; `after` sees each block when its forces are known.
+template <class After>
+void force_pass(Simulation& sim, const CellMotion& motion, const After& after) {
+  const Packing& p = sim.state.packing;
+  const std::vector<Eigen::Vector3d> shift = image_shifts(sim);
+  const ForceField field = force_field(sim, motion, shift);
+  std::vector<PassSums> parts(block_count(p.size()));
+  sim.team->for_each_block(parts.size(), [&](std::size_t block) {
+    const auto [begin, end] = block_range(block, p.size());
+    parts[block] = contact_forces(field, begin, end, sim.force.data());
+    after(block, begin, end);
+  });
+  PassSums sums;
+  for (const PassSums& part : parts) {
+    sums.box_power += part.box_power;
+    sums.contact_power += part.contact_power;
+    sums.E_pot += part.E_pot;
+  }
+  sim.state.sums = sums;
+}
+
+double sum(const std::vector<double>& parts) {
+  double total = 0;
+  for (const double part : parts) total += part;
+  return total;
+}
+
+void first_forces(Simulation& sim, const CellMotion& motion) {
+  State& state = sim.state;
+  Packing& p = state.packing;
+  for (std::size_t i = 0; i < p.size(); ++i) sim.motion[i] = {p.vx[i], p.vy[i], p.vz[i], 0};
+  for (auto* a : {&state.ax, &state.ay, &state.az}) a->assign(p.size(), 0.0);
+  const double gamma_b = state.material.background_viscosity;
+  std::vector<double> v2(block_count(p.size()));
+  force_pass(sim, motion, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      state.ax[i] = (sim.force[i][0] - gamma_b * p.vx[i]) / p.mass[i];
+      state.ay[i] = (sim.force[i][1] - gamma_b * p.vy[i]) / p.mass[i];
+      state.az[i] = (sim.force[i][2] - gamma_b * p.vz[i]) / p.mass[i];
+      v2[block] += p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i];
+    }
+  });
+  state.sums.drag_power = gamma_b * sum(v2);
+}
+
+/// First half of a step for the spheres of a block: half kick, drift, prediction of the velocity. Returns the largest
+/// squared distance that one of them has moved against the cell since the rebuild of the list.
+double kick_and_drift(Simulation& sim, const CellMotion& half, const Eigen::Matrix3d& drift, const Eigen::Matrix3d& carry,
+                      std::size_t begin, std::size_t end) {
+  State& state = sim.state;
+  Packing& p = state.packing;
+  const Eigen::Matrix3d& H = p.H;  // already the cell at the end of the step
+  const double h = sim.dt / 2;
+  double moved2 = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    p.vx[i] += h * state.ax[i];
+    p.vy[i] += h * state.ay[i];
+    p.vz[i] += h * state.az[i];
+    const double vx = p.vx[i], vy = p.vy[i], vz = p.vz[i];
+    if (half.transport == Transport::wall) {
+      const Eigen::Vector3d image(std::floor(p.sx[i]), std::floor(p.sy[i]), std::floor(p.sz[i]));
+      const Eigen::Vector3d inside = carry * (Eigen::Vector3d(p.sx[i], p.sy[i], p.sz[i]) - image) + image;
+      p.sx[i] = inside[0];
+      p.sy[i] = inside[1];
+      p.sz[i] = inside[2];
+    }
+    p.sx[i] += drift(0, 0) * vx + drift(0, 1) * vy + drift(0, 2) * vz;
+    p.sy[i] += drift(1, 1) * vy + drift(1, 2) * vz;
+    p.sz[i] += drift(2, 2) * vz;
+    sim.motion[i] = {vx + h * state.ax[i], vy + h * state.ay[i], vz + h * state.az[i], 0};
+    const double ux = p.sx[i] - state.ref_x[i], uy = p.sy[i] - state.ref_y[i], uz = p.sz[i] - state.ref_z[i];
+    const double x = H(0, 0) * ux + H(0, 1) * uy + H(0, 2) * uz, y = H(1, 1) * uy + H(1, 2) * uz, z = H(2, 2) * uz;
+    const double d2 = x * x + y * y + z * z;
+    if (!(d2 <= moved2)) moved2 = d2;  // a NaN stays
+    if (std::isnan(d2)) return d2;
+  }
+  return moved2;
+}
+
+/// Second half: kick with the new force, drag treated implicitly. Returns sum of v^2 over the block.
+double kick(Simulation& sim, std::size_t begin, std::size_t end) {
+  State& state = sim.state;
+  Packing& p = state.packing;
+  const double h = sim.dt / 2, gamma_b = state.material.background_viscosity;
+  double v2 = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    const double inverse_mass = 1 / p.mass[i];
+    const double damped = 1 / (1 + h * gamma_b * inverse_mass);
+    p.vx[i] = (p.vx[i] + h * sim.force[i][0] * inverse_mass) * damped;
+    p.vy[i] = (p.vy[i] + h * sim.force[i][1] * inverse_mass) * damped;
+    p.vz[i] = (p.vz[i] + h * sim.force[i][2] * inverse_mass) * damped;
+    state.ax[i] = (sim.force[i][0] - gamma_b * p.vx[i]) * inverse_mass;
+    state.ay[i] = (sim.force[i][1] - gamma_b * p.vy[i]) * inverse_mass;
+    state.az[i] = (sim.force[i][2] - gamma_b * p.vz[i]) * inverse_mass;
+    v2 += p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i];
+  }
+  return v2;
+}
+
+[[noreturn]] void report_lost_sphere(const Packing& p) {
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!std::isfinite(p.sx[i] + p.sy[i] + p.sz[i] + p.vx[i] + p.vy[i] + p.vz[i])) {
+      throw Error(fmt::format("sphere {}: position or velocity is no longer finite; use a smaller time_step_fraction",
+                              p.id[i]));
+    }
+  }
+  throw Error("a sphere moved farther in one step than numbers can hold; use a smaller time_step_fraction");
+}
+
+}  // namespace
+
+Simulation start_simulation(State state, const EngineOptions& options, const CellMotion& motion) {
+  Simulation sim;
+  sim.options = options;
+  sim.state = std::move(state);
+  Packing& p = sim.state.packing;
+  p.H = motion.H;
+  check(p);
+  sim.team = std::make_shared<ThreadTeam>(options.threads);
+  const std::size_t n = p.size();
+  sim.place.resize(n);
+  sim.motion.resize(n);
+  sim.force.resize(n);
+  if (n > 0) {
+    sim.dt = options.time_step_fraction * min_collision_time(p, sim.state.material);
+    if (!(sim.dt > 0) || !std::isfinite(sim.dt)) {
+      throw InvalidInput(
+          "time_step_fraction: the time step is not positive and finite; check it, stiffness and contact_viscosity "
+          "(an overdamped contact has no collision time)");
+    }
+    if (!(options.skin > 0) || !std::isfinite(options.skin)) throw InvalidInput("skin: must be positive and finite");
+    sim.list.skin = options.skin * mean_radius(p);
+  }
+  const bool continued = sim.state.ax.size() == n && sim.state.ref_x.size() == n && n > 0;
+  if (continued) {
+    restore_list(sim);
+    sim.team->for_each_block(block_count(n), [&](std::size_t block) {
+      const auto [begin, end] = block_range(block, n);
+      place_spheres(sim, begin, end);
+    });
+  } else {
+    rebuild(sim);
+    first_forces(sim, motion);
+  }
+  return sim;
+}
+
+void advance(Simulation& sim, const CellMotion& half, const CellMotion& end) {
+  State& state = sim.state;
+  Packing& p = state.packing;
+  const std::size_t n = p.size();
+  const double h = sim.dt / 2, gamma_b = state.material.background_viscosity;
+  const double box_power = state.sums.box_power;
+  const double lost_power = state.sums.contact_power;
+  const double drag_power = state.sums.drag_power;
+
+  const Eigen::Matrix3d drift = sim.dt * (half.transport == Transport::wall ? end.H : half.H).inverse();
+  const Eigen::Matrix3d carry = end.H.inverse() * p.H;
+  p.H = end.H;
+  std::vector<double> moved2(block_count(n));
+  sim.team->for_each_block(moved2.size(), [&](std::size_t block) {
+    const auto [first, last] = block_range(block, n);
+    moved2[block] = kick_and_drift(sim, half, drift, carry, first, last);
+    place_spheres(sim, first, last);
+  });
+  double farthest2 = 0;
+  for (const double d2 : moved2) {
+    if (!(d2 < std::numeric_limits<double>::infinity())) report_lost_sphere(p);
+    farthest2 = std::max(farthest2, d2);
+  }
+  const double allowed = allowed_displacement(sim.list, state.ref_H, p.H);
+  if (n > 0 && !(std::sqrt(farthest2) < allowed)) rebuild(sim);
+
+  std::vector<double> v2(block_count(n));
+  force_pass(sim, end, [&](std::size_t block, std::size_t first, std::size_t last) { v2[block] = kick(sim, first, last); });
+  state.sums.drag_power = gamma_b * sum(v2);
+
+  ++state.step;
+  state.time += sim.dt;
+  state.ledger.W_box += h * (box_power + state.sums.box_power);
+  state.ledger.D_contact += h * (lost_power + state.sums.contact_power);
+  state.ledger.D_background += h * (drag_power + state.sums.drag_power);
+}
+
+std::vector<Eigen::Vector3d> image_shifts(const Simulation& sim) {
+  std::vector<Eigen::Vector3d> shift;
+  for (const Eigen::Vector3d& n : sim.list.offset) shift.push_back(sim.state.packing.H * n);
+  return shift;
+}
+
+ForceField force_field(const Simulation& sim, const CellMotion& motion, const std::vector<Eigen::Vector3d>& shift) {
+  const Packing& p = sim.state.packing;
+  const Material& material = sim.state.material;
+  return {&sim.list,   sim.place.data(), sim.motion.data(),  p.sx.data(),                p.sy.data(),
+          p.sz.data(), shift.data(),     p.id.data(),        p.H,                        motion.L,
+          material.stiffness, material.contact_viscosity,    motion.transport == Transport::wall};
+}
+
+void open_ledger(Simulation& sim) {
+  const double E_kin = kinetic_energy(sim.state.packing);
+  sim.state.ledger = {};
+  sim.state.ledger.E_start = E_kin + sim.state.sums.E_pot;
+  sim.state.ledger.E_kin_start = E_kin;
+}
+
+double kinetic_energy(const Packing& p) {
+  double twice = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    twice += p.mass[i] * (p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i]);
+  }
+  return twice / 2;
+}
+
+double energy_residual(const Simulation& sim) {
+  const Ledger& ledger = sim.state.ledger;
+  const double lost = ledger.D_contact + ledger.D_background;
+  const double scale = std::abs(ledger.W_box) + ledger.E_kin_start + lost;
+  if (scale == 0) return 0;
+  const double change = kinetic_energy(sim.state.packing) + sim.state.sums.E_pot - ledger.E_start;
+  return (ledger.W_box - change - lost) / scale;
+}
+
+}  // namespace grainlaw::dem
