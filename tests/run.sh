@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# tests/run.sh [--full]: installs what is missing, builds Release, runs the tests.
+#   --full  adds the long tests, the sanitizer builds and the acceptance scripts.
+# With CI=true in the environment warnings are errors. Exit code 0 only if everything passed.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+full=no
+case $#:${1:-} in
+  0:) ;;
+  1:--full) full=yes ;;
+  *) sed -n 's/^# //; 2,4p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
+jobs=$(nproc)
+
+build() { # preset option...
+  cmake --preset "$1" --log-level=WARNING "${@:2}"
+  cmake --build "build/$1" --parallel "$jobs"
+}
+
+options=()
+if [[ ${CI:-false} == true ]]; then
+  options+=(-DGRAINLAW_WERROR=ON)
+fi
+
+./install-packages.sh
+build release "${options[@]}"
+if [[ $full == no ]]; then
+  exec ctest --preset release --parallel "$jobs"
+fi
+
+failed=()
+ctest --test-dir build/release --output-on-failure --parallel "$jobs" || failed+=(release)
+for preset in asan-ubsan tsan; do
+  build "$preset" "${options[@]}"
+  ctest --preset "$preset" --parallel "$jobs" || failed+=("$preset")
+done
+for script in tests/acceptance/*.sh; do
+  [[ -e $script ]] || continue
+  echo "== $script"
+  bash "$script" || failed+=("$script")
+done
+
+if ((${#failed[@]})); then
+  echo "tests/run.sh --full: failed: ${failed[*]}" >&2
+  exit 1
+fi
+echo "tests/run.sh --full: everything passed" >&2
