@@ -78,6 +78,7 @@ struct ShearFit {
 struct Calibration {
   Coupling coupling = Coupling::energy;
   LawParameters<double> parameters;                    ///< not identified ones stay at their start and must not be read
+  LawParameters<double> staged;                        ///< after stages 1-3, where the evolution stage starts from
   std::array<Estimate, kParameterCount> estimates;     ///< in the order of parameter_table()
   Eigen::MatrixXd covariance;                          ///< kParameterCount square, zero where there is no error
   std::vector<Stage> stages;
