@@ -1,9 +1,10 @@
 #include "dem/neighbour_list.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "model/error.hpp"
@@ -177,7 +178,9 @@ double allowed_displacement(const NeighbourList& list, const Eigen::Matrix3d& re
   const double reach = 2 * list.r_max;
   double allowed = (sigma_min * (reach + list.skin) - reach) / 2;
   if (allowed < 0.25 * list.skin) {
-    sigma_min = Eigen::JacobiSVD<Eigen::Matrix3d>(stretch).singularValues()(2);
+    const Eigen::Matrix3d square = stretch.transpose() * stretch;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(square, Eigen::EigenvaluesOnly);
+    sigma_min = std::sqrt(std::max(0.0, eigen.eigenvalues()(0)));
     allowed = (sigma_min * (reach + list.skin) - reach) / 2;
   }
   return allowed;
