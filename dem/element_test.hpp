@@ -1,6 +1,10 @@
 #pragma once
 // An element test: a packing driven along a strain path, observed at equal steps of the path parameter.
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "dem/drive.hpp"
 #include "model/observation.hpp"
 #include "model/run_control.hpp"
@@ -13,6 +17,7 @@ struct ElementTestOptions {
   int rows = 200;                    ///< rows of each segment (besides the first row of the test)
   double warn_energy_residual = 1e-3;  ///< see energy_residual()
   double stop_energy_residual = 1e-2;  ///< beyond it the test stops with Error 'energy balance'
+  bool check_time_step = true;       ///< refuse beyond kMaxTimeStepFraction; false only to see the balance stop it (D16)
 };
 
 struct ElementTest {
@@ -20,15 +25,18 @@ struct ElementTest {
   State end;                       ///< state at the end of the path
   std::uint64_t steps = 0;         ///< time steps taken
   double seconds = 0;              ///< wall time [s]
-  double time_step = 0;            ///< dt [s]
+  double time_step = 0;            ///< dt, the largest of the segments' [s]
   std::vector<std::string> warnings;  ///< energy residual or inertial number beyond their limits, for the log
 };
 
-/// Runs `segments` (resolve() of the path at the state's own volume fraction) from `start`; time, step and ledger begin
-/// at zero. Steps per segment are rounded up so that segments end exactly; dt is at most the engine's.
-/// `on_step` (may be empty) sees the simulation after each step with the path's segment index and parameter e, e.g. to
-/// keep a state. Throws Error 'energy balance' (hard case D9, D16), InvalidInput, Interrupted.
+/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state.
 using StepObserver = std::function<void(const Simulation&, int segment, double e)>;
+
+/// Runs `segments` (resolve() of the path at the state's own volume fraction) from `start`; time, step and ledger begin
+/// at zero. Steps per segment are rounded up so that segments end exactly; dt is at most the engine's. A row is taken
+/// at the first step that reaches its e; `strain` is that of the step. A corner is a jump of the velocity gradient:
+/// forces are computed anew there. Throws InvalidInput for options out of range, Interrupted, and Error 'energy
+/// balance' (hard cases D9, D16) naming row and residual.
 ElementTest run_element_test(const State& start, const std::vector<StraightSegment>& segments,
                              const ElementTestOptions& options, const RunControl& control, const StepObserver& on_step = {});
 

@@ -4,11 +4,11 @@
 // relaxed. A preparation is a function of its options.
 
 #include <functional>
-#include <string>
+#include <optional>
+#include <vector>
 
-#include "dem/drive.hpp"
+#include "dem/element_test.hpp"
 #include "dem/relax.hpp"
-#include "model/observation.hpp"
 
 namespace grainlaw::dem {
 
@@ -31,6 +31,7 @@ struct PreparationOptions {
   double gas_compression_factor = 10;  ///< strain rate of the gas compression over drive.strain_rate [-]
   std::vector<double> keep_loading;    ///< densities kept on the loading branch, within (nu_start, nu_max]
   std::vector<double> keep_unloading;  ///< densities kept on the unloading branch, within [nu_start, nu_max)
+  std::optional<double> nu_end;   ///< end of the unloading branch; default: lowest of keep_unloading, else nu_start [-]
   int rows = 200;                 ///< rows of each branch's series (besides the first)
 };
 
@@ -38,7 +39,7 @@ struct PreparationOptions {
 struct KeptState {
   Branch branch = Branch::unloading;
   double nu = 0;          ///< requested volume fraction; the state has it to rounding
-  State state;
+  State state;            ///< at rest, cell of exactly this density
   Relaxation relaxation;  ///< `relaxed` false: flagged, near jamming
 };
 
@@ -46,13 +47,15 @@ struct KeptState {
 struct PreparationSink {
   std::function<void(const KeptState&)> keep;                       ///< required
   std::function<void(Branch, const std::vector<Observation>&)> series;  ///< whole series of a branch; required
+  std::function<void(const std::string&)> warn;  ///< energy or rate beyond their limits, with the stage; may be empty
 };
 
 /// The random gas: radii uniform on 2<r>/(w+1) [1, w], random positions without overlap beyond what the relaxation
-/// removes, random velocities, zero momentum, volume fraction nu_gas, cubic cell.
+/// removes, random velocities, zero momentum, volume fraction nu_gas, cubic cell. Throws InvalidInput naming the key.
 State random_gas(const PackingOptions& options, double nu_gas, const EngineOptions& engine, const RunControl& control);
 
-/// Runs the whole preparation. Throws InvalidInput for options out of range, Interrupted on request.
+/// Runs the whole preparation. The branches are not interrupted by keeping: when one crosses a kept density, a copy is
+/// set to exactly that density and relaxed. Throws InvalidInput for options out of range, Interrupted on request.
 void prepare(const PreparationOptions& options, const PreparationSink& sink, const RunControl& control);
 
 }  // namespace grainlaw::dem
