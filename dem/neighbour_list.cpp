@@ -16,6 +16,11 @@ using Index3 = std::array<int, 3>;
 
 constexpr int kMaxBinsPerAxis = 1024;
 
+/// Position inside the cell and radius [m].
+struct Place {
+  double x, y, z, r;
+};
+
 /// Spheres sorted into bins of the cell: bin b holds order[start[b] .. start[b+1]).
 struct Bins {
   Index3 count{1, 1, 1};
@@ -24,6 +29,7 @@ struct Bins {
   std::vector<std::size_t> start;
   std::vector<Index3> wrapped;  // image in which the list finds a sphere: floor of its fraction
   std::vector<std::size_t> bin;
+  std::vector<Place> place;     // wrapped positions in the order of `order`
 
   std::size_t at(const Index3& b) const {
     return (static_cast<std::size_t>(b[0]) * static_cast<std::size_t>(count[1]) + static_cast<std::size_t>(b[1])) *
@@ -33,6 +39,11 @@ struct Bins {
 
 /// Distances between opposite faces of the cell.
 Eigen::Vector3d face_distances(const Eigen::Matrix3d& H) { return H.inverse().rowwise().norm().cwiseInverse(); }
+
+Place place_of(const Packing& p, std::size_t i, const Index3& wrapped) {
+  const Eigen::Vector3d x = p.H * Eigen::Vector3d(p.sx[i] - wrapped[0], p.sy[i] - wrapped[1], p.sz[i] - wrapped[2]);
+  return {x[0], x[1], x[2], p.radius[i]};
+}
 
 Bins sort_into_bins(const Packing& p, double cutoff) {
   Bins bins;
@@ -66,7 +77,12 @@ Bins sort_into_bins(const Packing& p, double cutoff) {
   }
   for (std::size_t b = 0; b < total; ++b) bins.start[b + 1] += bins.start[b];
   std::vector<std::size_t> next(bins.start.begin(), bins.start.end() - 1);
-  for (std::size_t i = 0; i < n; ++i) bins.order[next[bins.bin[i]]++] = static_cast<std::uint32_t>(i);
+  bins.place.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t slot = next[bins.bin[i]]++;
+    bins.order[slot] = static_cast<std::uint32_t>(i);
+    bins.place[slot] = place_of(p, i, bins.wrapped[i]);
+  }
   return bins;
 }
 
@@ -80,7 +96,7 @@ struct Entry {
 
 /// All entries of sphere i.
 void find_entries(const Packing& p, const Bins& bins, double skin, std::size_t i, std::vector<Entry>& found) {
-  const Eigen::Vector3d s_i(p.sx[i], p.sy[i], p.sz[i]);
+  const Place place = place_of(p, i, bins.wrapped[i]);
   Index3 home{};
   std::size_t rest = bins.bin[i];
   for (int a = 2; a >= 0; --a) {
@@ -99,14 +115,16 @@ void find_entries(const Packing& p, const Bins& bins, double skin, std::size_t i
           b[a] = home[a] + step[a] - image[a] * bins.count[a];
         }
         const std::size_t bin = bins.at(b);
+        const Eigen::Vector3d shift = p.H * Eigen::Vector3d(image[0], image[1], image[2]);
+        const Place own{place.x - shift[0], place.y - shift[1], place.z - shift[2], place.r + skin};
         for (std::size_t k = bins.start[bin]; k < bins.start[bin + 1]; ++k) {
+          const Place& other = bins.place[k];
+          const double dx = own.x - other.x, dy = own.y - other.y, dz = own.z - other.z, reach = own.r + other.r;
+          if (!(dx * dx + dy * dy + dz * dz < reach * reach)) continue;
           const std::uint32_t j = bins.order[k];
           Index3 n{};
           for (std::size_t a = 0; a < 3; ++a) n[a] = bins.wrapped[i][a] + image[a] - bins.wrapped[j][a];
-          if (j == i && n == Index3{}) continue;
-          const Eigen::Vector3d d = p.H * (s_i - Eigen::Vector3d(p.sx[j] + n[0], p.sy[j] + n[1], p.sz[j] + n[2]));
-          const double reach = p.radius[i] + p.radius[j] + skin;
-          if (d.squaredNorm() < reach * reach) found.push_back({j, n});
+          if (j != i || n != Index3{}) found.push_back({j, n});
         }
       }
     }

@@ -16,7 +16,7 @@ namespace grainlaw::dem {
 
 struct EngineOptions {
   double time_step_fraction = 0.1;  ///< dt/t_c,min of the actual packing [-]
-  double skin = 0.1;                ///< skin of the neighbour list over the mean radius [-]
+  double skin = 0.3;                ///< skin of the neighbour list over the mean radius [-]
   int threads = 1;                  ///< threads of one run
 };
 
