@@ -1,0 +1,86 @@
+#include "predict/compare.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "model/error.hpp"
+
+namespace grainlaw::predict {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFirstStrain = 0.01;      // before it the start, not the law, is compared
+constexpr double kStrainTolerance = 1e-8;  // what points_of() accepts, and some
+
+void check_pairs(const Prediction& prediction, const TestRecord& test) {
+  if (prediction.rows.size() > test.rows.size()) {
+    throw InvalidInput(fmt::format("{}: {} predicted rows for {} observed ones; predict at points_of(test)", test.name,
+                                   prediction.rows.size(), test.rows.size()));
+  }
+  for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
+    const double off = (prediction.rows[i].strain.tensor - test.rows[i].strain.tensor).norm();
+    if (!(off <= kStrainTolerance)) {
+      throw InvalidInput(
+          fmt::format("{}: row {}: predicted at another strain than observed ({:.3g} apart); predict at "
+                      "points_of(test)",
+                      test.name, i, off));
+    }
+  }
+}
+
+template <class Predicted, class Observed>
+QuantityComparison compare_quantity(const std::string& name, const Prediction& prediction, const TestRecord& test,
+                                    double from, Predicted predicted, Observed observed) {
+  QuantityComparison result;
+  result.quantity = name;
+  double sum = 0, sum_of_squares = 0, largest_observed = 0;
+  for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
+    const PredictedRow& row = prediction.rows[i];
+    const double p = predicted(row), o = observed(test.rows[i]);
+    if (row.shear_path < from || !std::isfinite(p) || !std::isfinite(o)) continue;
+    const double difference = p - o;
+    ++result.rows;
+    sum += difference;
+    sum_of_squares += difference * difference;
+    largest_observed = std::max(largest_observed, std::abs(o));
+    if (result.rows == 1 || std::abs(difference) > std::abs(result.largest)) {
+      result.largest = difference;
+      result.largest_at_eps_dev = row.eps_dev;
+      result.largest_at_nu = row.nu;
+    }
+  }
+  if (result.rows == 0) {
+    result.bias = result.rms = result.normalised_rms = result.largest = kNaN;
+    result.largest_at_eps_dev = result.largest_at_nu = kNaN;
+    return result;
+  }
+  result.bias = sum / result.rows;
+  result.rms = std::sqrt(sum_of_squares / result.rows);
+  result.normalised_rms = largest_observed > 0 ? result.rms / largest_observed : kNaN;
+  return result;
+}
+
+}  // namespace
+
+Comparison compare(const Prediction& prediction, const TestRecord& test) {
+  check_pairs(prediction, test);
+  // Decided by the path, not by the rows reached: a path of isotropic segments only has no shear to wait for.
+  const bool sheared = !shear_direction(resolve(test.path)).isZero();
+  const double from = sheared ? kFirstStrain : 0;
+  Comparison comparison;
+  comparison.test = test.name;
+  comparison.quantities = {compare_quantity(
+                               "P_star", prediction, test, from, [](const PredictedRow& r) { return r.state.P; },
+                               [](const Observation& o) { return o.P_star; }),
+                           compare_quantity(
+                               "s_par", prediction, test, from, [](const PredictedRow& r) { return r.s_par; },
+                               [](const Observation& o) { return o.s_par; }),
+                           compare_quantity(
+                               "F_par", prediction, test, from, [](const PredictedRow& r) { return r.F_par; },
+                               [](const Observation& o) { return o.F_par; })};
+  return comparison;
+}
+
+}  // namespace grainlaw::predict

@@ -1,0 +1,214 @@
+#include "predict/cvode.hpp"
+
+#include <cvodes/cvodes.h>
+#include <fmt/format.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+
+#include "model/error.hpp"
+
+namespace grainlaw::predict {
+namespace {
+
+struct Release {
+  void operator()(SUNContext context) const { SUNContext_Free(&context); }
+  void operator()(N_Vector vector) const { N_VDestroy(vector); }
+  void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
+  void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
+  void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
+  void operator()(void* memory) const { CVodeFree(&memory); }
+};
+
+template <class Pointer>
+using Owned = std::unique_ptr<std::remove_pointer_t<Pointer>, Release>;
+
+template <class Pointer>
+Owned<Pointer> own(Pointer pointer, const char* what) {
+  if (!pointer) throw Error(fmt::format("CVODE: {} could not be created; is memory exhausted?", what));
+  return Owned<Pointer>(pointer);
+}
+
+Owned<SUNContext> create_context() {
+  SUNContext context = nullptr;
+  SUNContext_Create(nullptr, &context);
+  return own(context, "its context");
+}
+
+constexpr int kTryAgain = 1;  // recoverable: the solver reduces its step
+constexpr int kGiveUp = -1;
+
+}  // namespace
+
+struct Cvode::Impl {
+  std::size_t size;
+  OdeRate rate;
+  OdeEvent event;
+  // Destroyed in reverse order: the solver's memory first, the context last.
+  Owned<SUNContext> context = create_context();
+  Owned<N_Vector> y;
+  Owned<SUNMatrix> matrix;
+  Owned<SUNLinearSolver> linear;
+  Owned<SUNNonlinearSolver> nonlinear;
+  Owned<void*> memory;
+
+  std::string message;         // what the solver said last
+  bool step_vanished = false;  // it warned that t + h == t
+  std::exception_ptr thrown;   // by the user's rate; must not cross the C boundary
+  bool initialised = false;
+  double t = 0;               // of the last start() or advance()
+  SolverStatistics finished;  // work before the last start()
+
+  static int evaluate_rate(realtype t, N_Vector y, N_Vector rate, void* user) {
+    auto& self = *static_cast<Impl*>(user);
+    double* out = N_VGetArrayPointer(rate);
+    std::fill_n(out, self.size, std::numeric_limits<double>::quiet_NaN());
+    try {
+      self.rate(t, N_VGetArrayPointer(y), out);
+    } catch (...) {
+      self.thrown = std::current_exception();
+      return kGiveUp;
+    }
+    return std::all_of(out, out + self.size, [](double v) { return std::isfinite(v); }) ? 0 : kTryAgain;
+  }
+
+  static int evaluate_event(realtype t, N_Vector y, realtype* value, void* user) {
+    auto& self = *static_cast<Impl*>(user);
+    try {
+      *value = self.event(t, N_VGetArrayPointer(y));
+    } catch (...) {
+      self.thrown = std::current_exception();
+      return kGiveUp;
+    }
+    return std::isfinite(*value) ? 0 : kGiveUp;
+  }
+
+  static void keep_message(int code, const char*, const char*, char* text, void* user) {
+    auto& self = *static_cast<Impl*>(user);
+    self.message = text ? text : "";
+    if (code == CV_WARNING) self.step_vanished = true;  // the only warning of an integration: t + h == t
+  }
+
+  void require(int flag, const char* call) const {
+    if (flag != CV_SUCCESS) throw Error(fmt::format("{} failed with flag {}: {}", call, flag, message));
+  }
+
+  SolverStatistics since_start() const {
+    SolverStatistics s;
+    if (!initialised) return s;
+    CVodeGetNumSteps(memory.get(), &s.steps);
+    CVodeGetNumRhsEvals(memory.get(), &s.rhs_evaluations);
+    CVodeGetNumErrTestFails(memory.get(), &s.error_test_failures);
+    CVodeGetNumNonlinSolvIters(memory.get(), &s.nonlinear_iterations);
+    long jacobian_evaluations = 0;
+    if (linear) CVodeGetNumLinRhsEvals(memory.get(), &jacobian_evaluations);
+    s.rhs_evaluations += jacobian_evaluations;
+    return s;
+  }
+
+  void initialise(double t_0, const Tolerances& tolerances);
+};
+
+namespace {
+
+void accumulate(SolverStatistics& total, const SolverStatistics& part) {
+  total.steps += part.steps;
+  total.rhs_evaluations += part.rhs_evaluations;
+  total.error_test_failures += part.error_test_failures;
+  total.nonlinear_iterations += part.nonlinear_iterations;
+}
+
+}  // namespace
+
+void Cvode::Impl::initialise(double t_0, const Tolerances& tolerances) {
+  void* const cvode = memory.get();
+  require(CVodeSetErrHandlerFn(cvode, keep_message, this), "CVodeSetErrHandlerFn");
+  require(CVodeInit(cvode, evaluate_rate, t_0, y.get()), "CVodeInit");
+  require(CVodeSetUserData(cvode, this), "CVodeSetUserData");
+  require(CVodeSStolerances(cvode, tolerances.relative, tolerances.absolute), "CVodeSStolerances");
+  require(CVodeSetMaxNumSteps(cvode, tolerances.max_steps), "CVodeSetMaxNumSteps");
+  const auto unknowns = static_cast<sunindextype>(size);
+  if (tolerances.method == Method::adams) {
+    nonlinear = own(SUNNonlinSol_FixedPoint(y.get(), 0, context.get()), "its iteration");
+    require(CVodeSetNonlinearSolver(cvode, nonlinear.get()), "CVodeSetNonlinearSolver");
+  } else {
+    matrix = own(SUNDenseMatrix(unknowns, unknowns, context.get()), "its matrix");
+    linear = own(SUNLinSol_Dense(y.get(), matrix.get(), context.get()), "its linear solver");
+    require(CVodeSetLinearSolver(cvode, linear.get(), matrix.get()), "CVodeSetLinearSolver");
+  }
+  if (event) {
+    int falling = -1;
+    require(CVodeRootInit(cvode, 1, evaluate_event), "CVodeRootInit");
+    require(CVodeSetRootDirection(cvode, &falling), "CVodeSetRootDirection");
+    require(CVodeSetNoInactiveRootWarn(cvode), "CVodeSetNoInactiveRootWarn");
+  }
+}
+
+Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event)
+    : impl_(std::make_unique<Impl>()) {
+  Impl& self = *impl_;
+  self.size = size;
+  self.rate = std::move(rate);
+  self.event = std::move(event);
+  self.y = own(N_VNew_Serial(static_cast<sunindextype>(size), self.context.get()), "its state vector");
+  N_VConst(0, self.y.get());
+  self.memory =
+      own(CVodeCreate(tolerances.method == Method::adams ? CV_ADAMS : CV_BDF, self.context.get()), "its memory");
+  self.initialise(0, tolerances);
+}
+
+Cvode::~Cvode() = default;
+
+void Cvode::start(double t, std::span<const double> y, double t_stop) {
+  Impl& self = *impl_;
+  accumulate(self.finished, self.since_start());
+  std::copy(y.begin(), y.end(), N_VGetArrayPointer(self.y.get()));
+  self.require(CVodeReInit(self.memory.get(), t, self.y.get()), "CVodeReInit");
+  self.require(CVodeSetStopTime(self.memory.get(), t_stop), "CVodeSetStopTime");
+  self.initialised = true;
+  ++self.finished.restarts;
+  self.t = t;
+}
+
+Arrival Cvode::advance(double t, std::span<double> y) {
+  Impl& self = *impl_;
+  double* const state = N_VGetArrayPointer(self.y.get());
+  std::fill_n(state, self.size, std::numeric_limits<double>::quiet_NaN());
+  std::fill(y.begin(), y.end(), std::numeric_limits<double>::quiet_NaN());
+  self.message.clear();
+  self.step_vanished = false;
+  self.thrown = nullptr;
+
+  double reached = std::numeric_limits<double>::quiet_NaN();
+  const int flag = CVode(self.memory.get(), t, self.y.get(), &reached, CV_NORMAL);
+  if (self.thrown) std::rethrow_exception(self.thrown);
+
+  const bool finite = std::all_of(state, state + self.size, [](double v) { return std::isfinite(v); });
+  const auto failure = [&](std::string why) {
+    return Arrival{Arrival::Kind::failed, std::isfinite(reached) ? reached : self.t, std::move(why)};
+  };
+  if (flag < 0) return failure(self.message.empty() ? fmt::format("CVODE returned {}", flag) : self.message);
+  if (self.step_vanished) return failure("the step of CVODE vanished: " + self.message);
+  if (!finite) return failure(fmt::format("CVODE returned {} with a state that is not finite", flag));
+  const bool at_event = flag == CV_ROOT_RETURN;
+  if (at_event ? !(reached >= self.t && reached <= t) : reached != t) {
+    return failure(fmt::format("CVODE returned {} at t = {} instead of {}", flag, reached, t));
+  }
+  std::copy_n(state, self.size, y.begin());
+  self.t = reached;
+  return {at_event ? Arrival::Kind::event : Arrival::Kind::reached, reached, {}};
+}
+
+SolverStatistics Cvode::statistics() const {
+  SolverStatistics total = impl_->finished;
+  accumulate(total, impl_->since_start());
+  return total;
+}
+
+}  // namespace grainlaw::predict

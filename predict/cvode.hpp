@@ -1,0 +1,53 @@
+#pragma once
+// SUNDIALS CVODE for a small system dy/dt = f(t, y), y(t_0) = y_0, behind a header without SUNDIALS in it.
+//   adams: variable order 1-12, functional iteration; bdf: variable order 1-5, Newton with a dense matrix
+// After every call y must be finite and t exactly the requested one, otherwise the call has failed: the library is
+// known to report success with a wrong y when its step vanishes, and to loop when a root function is not a number.
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "predict/predict.hpp"
+
+namespace grainlaw::predict {
+
+/// Writes dy/dt at (t, y). A rate that is not finite makes the solver try a smaller step. May throw.
+using OdeRate = std::function<void(double t, const double* y, double* rate)>;
+
+/// The integration ends where this falls through zero. May be empty.
+using OdeEvent = std::function<double(double t, const double* y)>;
+
+/// How one call of Cvode::advance ended.
+struct Arrival {
+  enum class Kind { reached, event, failed } kind = Kind::failed;
+  double t = 0;         ///< where y is: the requested t, the place of the event, or where the solver gave up
+  std::string message;  ///< the solver's own words on failure, else empty
+};
+
+class Cvode {
+ public:
+  /// `size` unknowns. Throws Error when memory runs out or an option is refused.
+  Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event = {});
+  ~Cvode();
+  Cvode(const Cvode&) = delete;
+  Cvode& operator=(const Cvode&) = delete;
+
+  /// (Re-)initialises at (t, y); the right-hand side is never evaluated beyond `t_stop` > t. Forgets all history.
+  void start(double t, std::span<const double> y, double t_stop);
+
+  /// Integrates to `t`, within [t of the previous call, t_stop] and after that of start(). `y` holds the state there,
+  /// at the event, or NaN after a failure; start() again before going on from either of these. Exceptions of the rate
+  /// pass through.
+  Arrival advance(double t, std::span<double> y);
+
+  /// Work of all starts together (without `seconds`).
+  SolverStatistics statistics() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace grainlaw::predict

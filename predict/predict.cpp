@@ -1,0 +1,168 @@
+#include "predict/predict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "model/error.hpp"
+#include "predict/path_states.hpp"
+
+namespace grainlaw::predict {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+bool is_finite(const LawState<double>& state) {
+  return std::isfinite(state.P) && state.sigma.allFinite() && state.F.allFinite();
+}
+
+void check_tolerances(const Tolerances& tolerances) {
+  if (!(tolerances.relative >= 1e-14 && tolerances.relative < 1)) {
+    throw InvalidInput(fmt::format("relative tolerance {} is outside [1e-14, 1)", tolerances.relative));
+  }
+  if (!(tolerances.absolute >= 0 && std::isfinite(tolerances.absolute))) {
+    throw InvalidInput(fmt::format("absolute tolerance {} is not a positive number", tolerances.absolute));
+  }
+  if (tolerances.max_steps < 1) throw InvalidInput(fmt::format("max_steps {} is not positive", tolerances.max_steps));
+}
+
+void check_path(const std::vector<StraightSegment>& segments, const std::vector<OutputPoint>& points) {
+  if (segments.empty()) throw InvalidInput("the path has no segments; give at least one");
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const StraightSegment& s = segments[k];
+    if (!(s.length >= 0 && std::isfinite(s.length) && s.direction.tensor.allFinite() && std::isfinite(s.nu_start) &&
+          s.strain_start.tensor.allFinite())) {
+      throw InvalidInput(fmt::format("segments[{}] is not finite or has a negative length", k));
+    }
+  }
+  OutputPoint before;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const OutputPoint& point = points[i];
+    if (point.segment < before.segment || point.segment >= static_cast<int>(segments.size())) {
+      throw InvalidInput(
+          fmt::format("output point {}: segment {} is not one of {} in order", i, point.segment, segments.size()));
+    }
+    const double length = segments[static_cast<std::size_t>(point.segment)].length;
+    const double from = point.segment == before.segment ? before.e : 0;
+    if (!(point.e >= from && point.e <= length)) {
+      throw InvalidInput(fmt::format("output point {}: e = {} is outside [{}, {}] of segment {}", i, point.e, from,
+                                     length, point.segment));
+    }
+    before = point;
+  }
+}
+
+void check_start(const LawParameters<double>& parameters, double nu, const LawState<double>& start) {
+  if (!is_finite(start)) throw InvalidInput("the state at the start of the prediction is not finite");
+  if (!(start.P > 0)) throw InvalidInput(fmt::format("the start is not jammed: P* = {} is not positive", start.P));
+  const double nu_c = parameters.isotropic.pressure.nu_c;
+  if (!(nu > nu_c)) {
+    throw InvalidInput(
+        fmt::format("the start is not jammed: nu = {:.9g} is not above pressure.nu_c = {:.9g}", nu, nu_c));
+  }
+}
+
+PredictedRow row_at(const StraightSegment& segment, const OutputPoint& point, double path_before,
+                    const LawState<double>& state, const Deviator<double>& N) {
+  PredictedRow row;
+  row.segment = point.segment;
+  row.strain = segment.strain(point.e);
+  row.eps_vol = row.strain.tensor.trace();
+  row.eps_dev = deviatoric_norm(row.strain.tensor);
+  row.shear_path = path_before + segment.eps_dev_rate() * point.e;
+  row.nu = segment.nu(point.e);
+  row.state = state;
+  row.s_dev = state.sigma.norm() / state.P;
+  row.F_dev = state.F.norm();
+  const bool sheared = !N.isZero();
+  row.s_par = sheared ? state.sigma.dot(N) / state.P : kNaN;
+  row.F_par = sheared ? state.F.dot(N) : kNaN;
+  return row;
+}
+
+/// One line for each way in which `rows` leave `range`, naming the farthest row.
+std::vector<std::string> range_warnings(const std::vector<PredictedRow>& rows, const ValidRange& range) {
+  constexpr double slack = 1e-9;  // rounding of a path that ends at the limit
+  double nu_low = range.nu_min, nu_high = range.nu_max, eps_dev = range.eps_dev_max;
+  for (const PredictedRow& row : rows) {
+    nu_low = std::min(nu_low, row.nu);
+    nu_high = std::max(nu_high, row.nu);
+    eps_dev = std::max(eps_dev, row.eps_dev);
+  }
+  std::vector<std::string> warnings;
+  for (const double nu : {nu_low, nu_high}) {
+    if (nu < range.nu_min - slack || nu > range.nu_max + slack) {
+      warnings.push_back(
+          fmt::format("nu = {:.4g} lies outside the calibrated range {:.4g}-{:.4g}", nu, range.nu_min, range.nu_max));
+    }
+  }
+  if (eps_dev > range.eps_dev_max + slack) {
+    warnings.push_back(
+        fmt::format("eps_dev = {:.4g} lies beyond the calibrated strain {:.4g}", eps_dev, range.eps_dev_max));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+std::string to_string(Model model) { return model == Model::reduced ? "reduced" : "evolution"; }
+
+LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {
+  LawState<double> state{parameters.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
+  check_start(parameters, nu, state);
+  return state;
+}
+
+LawState<double> state_from_row(const Observation& row) {
+  const double P = row.stress.tensor.trace() / 3;
+  if (!(P > 0 && row.P_star > 0)) {
+    throw InvalidInput(fmt::format("the measured start is not jammed: P = {} Pa, P_star = {}", P, row.P_star));
+  }
+  const LawState<double> state{row.P_star, deviator<double>(row.stress.tensor) * (row.P_star / P),
+                               deviator<double>(row.fabric.tensor)};
+  if (!is_finite(state)) throw InvalidInput("the measured start has a stress or fabric that is not finite");
+  return state;
+}
+
+Prediction predict(Model model, const LawParameters<double>& parameters, Coupling coupling,
+                   const std::vector<StraightSegment>& segments, const LawState<double>& start,
+                   const std::vector<OutputPoint>& points, const Tolerances& tolerances, const ValidRange& range,
+                   const RunControl& control) {
+  check_tolerances(tolerances);
+  check_path(segments, points);
+  check_start(parameters, segments.front().nu_start, start);
+
+  const auto before = std::chrono::steady_clock::now();
+  const PathStates path = model == Model::reduced
+                              ? reduced_states(parameters, segments, start, points, control)
+                              : evolution_states(parameters, coupling, segments, start, points, tolerances, control);
+
+  Prediction prediction;
+  prediction.model = model;
+  prediction.unjammed = path.unjammed;
+  prediction.statistics = path.statistics;
+  prediction.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+
+  const Deviator<double> N = shear_direction(segments);
+  prediction.rows.reserve(path.states.size());
+  std::size_t k = 0;
+  double path_before = 0;  // shear path at the start of segment k
+  for (std::size_t i = 0; i < path.states.size(); ++i) {
+    for (; k < static_cast<std::size_t>(points[i].segment); ++k)
+      path_before += segments[k].eps_dev_rate() * segments[k].length;
+    if (!is_finite(path.states[i]) || !(path.states[i].P > 0)) {
+      throw Error(
+          fmt::format("segments[{}] at e = {:.9g}: the {} model gives a state that is not finite or P* <= 0; "
+                      "check the parameters",
+                      k, points[i].e, to_string(model)));
+    }
+    prediction.rows.push_back(row_at(segments[k], points[i], path_before, path.states[i], N));
+  }
+  prediction.warnings = range_warnings(prediction.rows, range);
+  return prediction;
+}
+
+}  // namespace grainlaw::predict
