@@ -1,0 +1,27 @@
+#pragma once
+// parameters.json: the calibrated law as others read it. Doubles bit for bit; null where a parameter is not identified.
+
+#include <filesystem>
+#include <string>
+
+#include "app/files/json_document.hpp"
+#include "fit/calibrate.hpp"
+#include "predict/predict.hpp"
+
+namespace grainlaw::app {
+
+struct ParametersFile {
+  fit::Calibration calibration;  ///< without stages and shear fits, which calibration.json holds
+  std::string dataset_digest;    ///< of the data set that was fitted; may be empty
+  Json provenance;
+};
+
+void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters);
+
+/// Throws InvalidInput naming file and key. Parameters without value keep the table's start and must not be read.
+ParametersFile read_parameters(const std::filesystem::path& file);
+
+/// Throws InvalidInput when `model` needs a parameter that has no value, naming it and what would identify it.
+void require_parameters(const ParametersFile& parameters, predict::Model model, const std::string& name);
+
+}  // namespace grainlaw::app

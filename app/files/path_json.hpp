@@ -1,0 +1,23 @@
+#pragma once
+// Strain paths in JSON: {initial: {nu, branch}, segments: [{mode | rate_tensor, axes, reverse, extent}]}.
+
+#include "app/files/json_document.hpp"
+#include "model/path.hpp"
+
+namespace grainlaw::app {
+
+/// `document` has passed its schema; `name` is the file and `place` the key in front of "initial" for messages, e.g. ""
+/// or "tests[0].path.". A segment with both mode and rate_tensor takes the direction of the tensor and the name of the
+/// mode; `both` says whether that is allowed (files written by path_to_json have both). Throws InvalidInput, also for
+/// extents that cannot be reached and volume fractions beyond 0.9.
+Path path_from_json(const Json& document, const std::string& name, const std::string& place, bool both);
+
+std::vector<PathSegment> segments_from_json(const Json& segments, const std::string& name, const std::string& place, bool both);
+
+/// initial and segments, directions written out in full.
+OrderedJson path_to_json(const Path& path);
+OrderedJson segments_to_json(const std::vector<PathSegment>& segments);
+
+Branch branch_from_json(const Json& object);  ///< key "branch"; unloading when absent
+
+}  // namespace grainlaw::app

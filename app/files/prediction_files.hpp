@@ -1,0 +1,56 @@
+#pragma once
+// The folder of a prediction: prediction.json, one CSV for each curve, and with --dem the new runs as a data set in
+// dem/ and comparison.json.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/files/dataset.hpp"
+#include "predict/compare.hpp"
+#include "predict/predict.hpp"
+
+namespace grainlaw::app {
+
+enum class Initial { law, measured };  ///< start of a prediction: the calibrated law, or the packing's measured values
+std::string to_string(Initial initial);
+
+/// The law along the path.
+struct PredictedCurve {
+  predict::Model model = predict::Model::evolution;
+  Initial initial = Initial::law;
+  std::optional<std::uint64_t> seed;  ///< of the DEM run at whose rows the curve was computed; none: equal steps
+  std::string file;                   ///< CSV in the prediction's folder
+  predict::Prediction prediction;
+};
+
+/// One curve against one DEM run, or the mean over runs.
+struct CurveComparison {
+  predict::Model model = predict::Model::evolution;
+  Initial initial = Initial::law;
+  std::optional<std::uint64_t> seed;  ///< none: mean over seeds (largest: of the seed where it is largest)
+  predict::Comparison comparison;     ///< test "mean" when none
+};
+
+struct PredictionFolder {
+  std::string name;                    ///< last part of the folder's path
+  Path path;
+  std::vector<PredictedCurve> curves;
+  std::optional<Dataset> dem;          ///< the runs in dem/
+  std::vector<CurveComparison> comparisons;
+  Json parameters;                     ///< file, sha256, dataset_digest of the parameters used
+  Json provenance;
+};
+
+/// Writes curves, prediction.json and, when there are DEM runs, comparison.json; dem/ must already be written.
+void write_prediction(const std::filesystem::path& folder, const PredictionFolder& content);
+
+/// Throws InvalidInput naming file and key.
+PredictionFolder read_prediction(const std::filesystem::path& folder);
+
+/// Mean of each quantity over the seeds of a model and initial.
+std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>& comparisons);
+
+}  // namespace grainlaw::app
