@@ -1,0 +1,57 @@
+#pragma once
+// A figure as plain data: panels in a grid, series in each. What is drawn and how, without any SVG.
+// Conventions of this report: DEM = symbols, law = solid lines, published = dashed lines.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/report/text.hpp"
+
+namespace grainlaw::app::report {
+
+enum class Marker { none, circle, square, triangle, diamond, cross, plus };
+enum class Line { none, solid, dashed, dotted };
+
+/// Colours of the palette by Okabe and Ito, distinguishable for the colour blind; yellow is left out (too pale).
+enum class Colour { ink, blue, vermillion, green, purple, orange, sky };
+inline constexpr int kColourCount = 7;
+
+struct Series {
+  Text label;                    ///< entry in the legend, once per figure and label; empty: none
+  std::vector<double> x, y;      ///< same length; a point that is not finite is not drawn but counted
+  std::vector<double> y_error;   ///< one standard error each, may be empty or NaN
+  Colour colour = Colour::ink;
+  Marker marker = Marker::none;
+  bool open_marker = false;      ///< outline only
+  double marker_size = 3;        ///< half of its width [px]
+  Line line = Line::none;
+};
+
+struct AxisStyle {
+  Text label;                        ///< quantity, symbol and unit
+  bool logarithmic = false;
+  std::optional<double> from, to;    ///< shown range; what is not given comes from the data
+  std::optional<double> include;     ///< a value that the range must contain, e.g. 0
+};
+
+struct Panel {
+  Text title;                 ///< may be empty
+  AxisStyle x, y;
+  std::vector<Series> series;
+  bool zero_line = false;     ///< a thin line at y = 0
+};
+
+struct Figure {
+  std::string id;             ///< letters, digits and '-'; unique in the page
+  std::string title;          ///< for the caption and for screen readers, one line
+  std::string description;    ///< what a reader sees, for screen readers
+  Text caption;               ///< below the figure
+  std::vector<std::string> sources;  ///< files that it was drawn from, relative to the report's directory
+  std::vector<Panel> panels;
+  int columns = 1;
+  double panel_height = 250;  ///< [px] of a figure 960 px wide
+  bool shared_axes = false;   ///< same ranges in all panels, numbers on the outer ones only
+};
+
+}  // namespace grainlaw::app::report

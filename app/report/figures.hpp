@@ -1,0 +1,34 @@
+#pragma once
+// The figures of the report, each from what was read. DEM: symbols, law: solid lines, published (Imole et al. 2013):
+// dashed lines. Curves are equations of model/ at the parameters of the files; nothing is fitted or integrated here.
+
+#include "app/report/figure.hpp"
+#include "app/report/report_input.hpp"
+
+namespace grainlaw::app::report {
+
+/// P*, C*, phi_r against nu: isotropic unloading, steady shear, Eqs. (11), (12), (14).
+Figure density_figure(const ReportInput& input);
+/// Eq. (15), Eq. (13) and F_v = g3 nu C on isotropic unloading.
+Figure scaled_density_figure(const ReportInput& input);
+
+/// s_par (Eq. 17) against eps_dev, a panel per density.
+Figure stress_ratio_figure(const ReportInput& input);
+/// F_par (Eq. 18) likewise.
+Figure fabric_figure(const ReportInput& input);
+
+/// s_max, beta_s, F_max, beta_F against nu with Eq. (20).
+Figure shear_law_figure(const ReportInput& input);
+
+/// Misfit of P*, s_par, F_par per calibration test of the coupled fit.
+Figure residual_figure(const ReportInput& input);
+
+/// P*, s_par, F_par against eps_dev of one prediction and the DEM runs of its path.
+Figure prediction_figure(const PredictionCase& prediction, std::size_t index);
+
+/// E_kin/E_pot, |energy residual|, inertial number against nu on the isotropic branches.
+Figure preparation_quality_figure(const ReportInput& input);
+/// The same over the strain of the shear tests.
+Figure shear_quality_figure(const ReportInput& input);
+
+}  // namespace grainlaw::app::report

@@ -1,0 +1,168 @@
+#include <cmath>
+
+#include "app/report/dem_series.hpp"
+#include "app/report/figures.hpp"
+#include "app/report/law_curves.hpp"
+#include "model/density_laws.hpp"
+
+namespace grainlaw::app::report {
+namespace {
+
+using Law = StateLaw<double>;
+
+constexpr int kRowsShown = 60;
+
+/// Curves of one quantity over density: ours and published, isotropic and steady.
+template <class Function>
+void add_state_curves(Panel& panel, const ReportInput& input, double from, double to, const Function& of) {
+  const LawParameters<double> published = published_parameters();
+  const auto add = [&](const char* label, const Law& law, Colour colour, Line line) {
+    panel.series.push_back(curve(notation(label), colour, line, from, to, [&](double nu) { return of(law, nu); }));
+  };
+  add("ISO, published", published.isotropic, Colour::ink, Line::dashed);
+  add("steady D2, published", published.steady, Colour::purple, Line::dashed);
+  add("ISO, fitted", input.calibration.parameters.isotropic, Colour::blue, Line::solid);
+  add("steady D2, fitted", input.calibration.parameters.steady, Colour::vermillion, Line::solid);
+}
+
+void add_isotropic_symbols(Panel& panel, const ReportInput& input, Quantity y) {
+  const auto seeds = seeds_of(input.tests);
+  for (const TestRecord& test : input.tests) {
+    if (!is_isotropic_unloading(test)) continue;
+    const Text label = plain("ISO unloading, DEM seed " + std::to_string(test.packing.seed));
+    panel.series.push_back(dem_symbols(test, &Observation::nu, y, kRowsShown, label, Colour::blue,
+                                       marker_of(index_of(seeds, test.packing.seed))));
+  }
+}
+
+void add_steady_symbols(Panel& panel, const ReportInput& input, double fit::ShearFit::*y) {
+  Series series;
+  series.label = plain("steady D2, DEM (mean per run)");
+  series.colour = Colour::vermillion;
+  series.marker = Marker::square;
+  series.marker_size = 3.2;
+  for (const fit::ShearFit& shear : input.calibration.shear) {
+    if (shear.mode != Mode::D2) continue;
+    series.x.push_back(shear.nu);
+    series.y.push_back(shear.*y);
+  }
+  panel.series.push_back(series);
+}
+
+struct Range {
+  double from, to;
+};
+
+/// From a little below jamming, where the laws begin, to the densest row.
+Range shown_range(const ReportInput& input) {
+  const auto& c = input.calibration;
+  return {std::min(c.parameters.steady.pressure.nu_c, c.parameters.isotropic.pressure.nu_c), c.nu_max};
+}
+
+Panel density_panel(const char* label, const Range& range) {
+  Panel panel;
+  panel.x.label = notation("volume fraction {ν}");
+  panel.x.from = range.from - 0.005;
+  panel.x.to = range.to + 0.005;
+  panel.y.label = notation(label);
+  return panel;
+}
+
+}  // namespace
+
+Figure density_figure(const ReportInput& input) {
+  const Range range = shown_range(input);
+  Figure figure;
+  figure.id = "density";
+  figure.title = "Pressure, coordination and rattlers against volume fraction";
+  figure.description =
+      "Three panels over volume fraction: dimensionless pressure and corrected coordination number rise, the fraction of "
+      "rattlers falls. Symbols are DEM data, solid lines the fitted equations 14, 11 and 12, dashed lines the published ones.";
+  figure.caption = notation(
+      "{P}* with Eq. 14, {C}* with Eq. 11, {φ}_{r} with Eq. 12. Every run shows about 60 of its rows. "
+      "Dashed: Table 2 of the paper.");
+  figure.sources = {"dataset/", "calibration.json", "parameters.json"};
+  figure.columns = 3;
+  figure.panel_height = 270;
+
+  Panel pressure = density_panel("pressure {P}* [–]", range);
+  pressure.y.include = 0;
+  add_isotropic_symbols(pressure, input, &Observation::P_star);
+  add_steady_symbols(pressure, input, &fit::ShearFit::P_star);
+  add_state_curves(pressure, input, range.from, range.to, [](const Law& law, double nu) { return law.P_star(nu); });
+
+  Panel coordination = density_panel("coordination number {C}* [–]", range);
+  add_isotropic_symbols(coordination, input, &Observation::C_star);
+  add_steady_symbols(coordination, input, &fit::ShearFit::C_star);
+  add_state_curves(coordination, input, range.from, range.to,
+                   [](const Law& law, double nu) { return law.coordination.C_star(nu); });
+
+  Panel rattlers = density_panel("rattler fraction {φ}_{r} [–]", range);
+  rattlers.y.include = 0;
+  add_isotropic_symbols(rattlers, input, &Observation::rattler_fraction);
+  add_steady_symbols(rattlers, input, &fit::ShearFit::rattler_fraction);
+  add_state_curves(rattlers, input, range.from, range.to,
+                   [](const Law& law, double nu) { return law.rattlers.fraction(nu, law.coordination.nu_c); });
+
+  figure.panels = {pressure, coordination, rattlers};
+  return figure;
+}
+
+Figure scaled_density_figure(const ReportInput& input) {
+  const Range range = shown_range(input);
+  const LawParameters<double>& ours = input.calibration.parameters;
+  const LawParameters<double> published = published_parameters();
+  const auto seeds = seeds_of(input.tests);
+  Figure figure;
+  figure.id = "scaled";
+  figure.title = "Scaled pressure, overlap and fabric trace on isotropic unloading";
+  figure.description =
+      "Three panels over volume fraction, all rising: pressure divided by density and coordination, mean overlap of contacts, "
+      "trace of the fabric tensor. Symbols are DEM data, solid lines the fitted equations, dashed lines the published ones.";
+  figure.caption = notation(
+      "Scaled pressure {P}* {ν}_{c}/({ν}{C}) with Eq. 15, mean overlap with Eq. 13 ({D} ln({ν}/{ν}_{c})), "
+      "{F}_{v} with {g}_{3}{ν}{C}.");
+  figure.sources = {"dataset/", "parameters.json"};
+  figure.columns = 3;
+  figure.panel_height = 230;
+
+  const auto add_curves = [&](Panel& panel, const auto& of) {
+    panel.series.push_back(curve(notation("published"), Colour::ink, Line::dashed, range.from, range.to,
+                                 [&](double nu) { return of(published, nu); }));
+    panel.series.push_back(curve(notation("fitted"), Colour::blue, Line::solid, range.from, range.to,
+                                 [&](double nu) { return of(ours, nu); }));
+  };
+  Panel scaled = density_panel("{P}* {ν}_{c}/({ν}{C}) [–]", range);
+  scaled.y.include = 0;
+  for (const TestRecord& test : input.tests) {
+    if (!is_isotropic_unloading(test)) continue;
+    Series series = dem_symbols(test, &Observation::nu, &Observation::P_star, kRowsShown,
+                                plain("DEM seed " + std::to_string(test.packing.seed)), Colour::blue,
+                                marker_of(index_of(seeds, test.packing.seed)));
+    const Series C = dem_symbols(test, &Observation::nu, &Observation::C, kRowsShown, {}, Colour::blue, Marker::none);
+    for (std::size_t i = 0; i < series.y.size(); ++i) series.y[i] *= ours.isotropic.pressure.nu_c / (C.x[i] * C.y[i]);
+    scaled.series.push_back(series);
+  }
+  add_curves(scaled, [](const auto& p, double nu) { return p.isotropic.pressure.scaled(nu); });
+
+  Panel overlap = density_panel("mean overlap ⟨δ⟩/⟨{r}⟩ [–]", range);
+  overlap.y.include = 0;
+  add_isotropic_symbols(overlap, input, &Observation::mean_overlap);
+  add_curves(overlap, [](const auto& p, double nu) {
+    return nu > p.isotropic.pressure.nu_c ? p.overlap_D * std::log(nu / p.isotropic.pressure.nu_c) : 0.0;
+  });
+
+  Panel trace = density_panel("fabric trace {F}_{v} [–]", range);
+  add_isotropic_symbols(trace, input, &Observation::F_v);
+  add_curves(trace, [](const auto& p, double nu) { return p.fabric_g3 * nu * p.isotropic.C(nu); });
+
+  for (Panel* panel : {&overlap, &trace}) {
+    for (Series& series : panel->series) {
+      if (series.marker != Marker::none) series.label = {};  // named in the first panel
+    }
+  }
+  figure.panels = {scaled, overlap, trace};
+  return figure;
+}
+
+}  // namespace grainlaw::app::report

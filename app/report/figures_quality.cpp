@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/report/dem_series.hpp"
+#include "app/report/figures.hpp"
+
+namespace grainlaw::app::report {
+namespace {
+
+struct Measure {
+  const char* label;
+  double (*of)(const Observation&);
+};
+
+constexpr std::array<Measure, 3> kMeasures{
+    {{"{E}_{kin}/{E}_{pot} [–]", [](const Observation& row) { return row.E_kin / row.E_pot; }},
+     {"|energy residual| [–]", [](const Observation& row) { return std::abs(row.energy_residual); }},
+     {"inertial number {I} [–]", [](const Observation& row) { return row.inertial_number; }}}};
+
+/// A thin line through the rows: these series are too dense for symbols.
+Series dem_line(const TestRecord& test, Quantity x, const Measure& measure, Text label, Colour colour, Line line) {
+  Series series;
+  series.label = std::move(label);
+  series.colour = colour;
+  series.line = line;
+  for (const Observation& row : test.rows) {
+    series.x.push_back(row.*x);
+    series.y.push_back(measure.of(row));
+  }
+  return series;
+}
+
+Figure quality_figure(const char* id, const char* title, const char* x_label) {
+  Figure figure;
+  figure.id = id;
+  figure.title = title;
+  figure.sources = {"dataset/"};
+  figure.columns = 3;
+  figure.panel_height = 220;
+  for (const Measure& measure : kMeasures) {
+    Panel panel;
+    panel.x.label = notation(x_label);
+    panel.y.label = notation(measure.label);
+    panel.y.logarithmic = true;
+    figure.panels.push_back(panel);
+  }
+  return figure;
+}
+
+}  // namespace
+
+Figure preparation_quality_figure(const ReportInput& input) {
+  Figure figure = quality_figure("quality-isotropic", "Kinetic energy, energy balance and inertial number on the isotropic branches",
+                                 "volume fraction {ν}");
+  figure.description =
+      "Three panels over volume fraction with logarithmic ordinates: ratio of kinetic to potential energy, magnitude of the "
+      "energy residual, inertial number. The first and the last fall with density.";
+  figure.caption = notation(
+      "DEM as lines. The energy residual is the box work minus what was stored and dissipated, over |work| + initial kinetic "
+      "energy + dissipation. A run warns beyond 10^{−3} and stops beyond 10^{−2}.");
+  for (std::size_t m = 0; m < kMeasures.size(); ++m) {
+    for (const TestRecord& test : input.tests) {
+      const bool unloading = is_isotropic_unloading(test);
+      if (!unloading && !is_isotropic_loading(test)) continue;
+      const auto seed = index_of(seeds_of(input.tests), test.packing.seed);
+      const std::string label = fmt::format("{}, seed {}", unloading ? "unloading" : "loading", test.packing.seed);
+      figure.panels[m].series.push_back(dem_line(test, &Observation::nu, kMeasures[m], plain(label), colour_of(seed),
+                                                 unloading ? Line::solid : Line::dotted));
+    }
+  }
+  return figure;
+}
+
+Figure shear_quality_figure(const ReportInput& input) {
+  Figure figure = quality_figure("quality-shear", "Kinetic energy, energy balance and inertial number in the element tests",
+                                 "strain path length ∫|d{ε}_{dev}| [–]");
+  figure.description =
+      "Three panels over the length of the strain path with logarithmic ordinates: ratio of kinetic to potential energy, "
+      "magnitude of the energy residual, inertial number, one line per run, colours by density.";
+  figure.caption = notation("All runs of the data set that shear, a line each, colours by the density {ν} at the start.");
+  std::vector<const TestRecord*> sheared;
+  for (const TestRecord& test : input.tests) {
+    if (!is_isotropic_loading(test) && !is_isotropic_unloading(test)) sheared.push_back(&test);
+  }
+  const std::vector<double> densities = densities_of(sheared);
+  for (std::size_t m = 0; m < kMeasures.size(); ++m) {
+    for (std::size_t d = 0; d < densities.size(); ++d) {
+      for (const TestRecord* test : sheared) {
+        if (std::abs(test->path.nu - densities[d]) >= 1e-6) continue;
+        const Line line = d < kColourCount - 1 ? Line::solid : Line::dashed;
+        figure.panels[m].series.push_back(dem_line(*test, &Observation::shear_path, kMeasures[m],
+                                                   notation(fmt::format("{{ν}} = {:.4g}", densities[d])), colour_of(d), line));
+      }
+    }
+  }
+  return figure;
+}
+
+}  // namespace grainlaw::app::report

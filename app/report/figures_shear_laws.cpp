@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "app/report/dem_series.hpp"
+#include "app/report/figures.hpp"
+#include "app/report/law_curves.hpp"
+
+namespace grainlaw::app::report {
+namespace {
+
+struct Quantity20 {
+  const char* label;
+  fit::Estimate fit::ShearFit::*staged;
+  ExponentialLaw<double> LawParameters<double>::*law;
+};
+
+Series per_run_points(const ReportInput& input, Mode mode, const Quantity20& quantity) {
+  Series series;
+  series.label = plain(to_string(mode) + ", DEM (fit per run)");
+  series.colour = mode == Mode::D2 ? Colour::blue : Colour::green;
+  series.marker = mode == Mode::D2 ? Marker::circle : Marker::diamond;
+  series.open_marker = true;
+  for (const fit::ShearFit& shear : input.calibration.shear) {
+    if (shear.mode != mode) continue;
+    const fit::Estimate& estimate = shear.*quantity.staged;
+    const bool known = estimate.status != fit::Status::not_identified;
+    series.x.push_back(shear.nu);
+    series.y.push_back(known ? estimate.value : std::numeric_limits<double>::quiet_NaN());
+    series.y_error.push_back(estimate.standard_error);
+  }
+  return series;
+}
+
+}  // namespace
+
+Figure shear_law_figure(const ReportInput& input) {
+  using P = LawParameters<double>;
+  static const std::array<Quantity20, 4> quantities{
+      {{"steady stress ratio {s}_{max} [–]", &fit::ShearFit::s_max, &P::stress_ratio_max},
+       {"rate {β}_{s} [–]", &fit::ShearFit::beta_s, &P::stress_rate},
+       {"steady fabric {F}_{max} [–]", &fit::ShearFit::F_max, &P::fabric_max},
+       {"rate {β}_{F} [–]", &fit::ShearFit::beta_F, &P::fabric_rate}}};
+  Figure figure;
+  figure.id = "shear-laws";
+  figure.title = "Steady values and rates of shear against volume fraction";
+  figure.description =
+      "Four panels over volume fraction, all falling: steady stress ratio, its rate, steady deviatoric fabric, its rate. "
+      "Symbols are fits of single DEM runs, solid lines equation 20 after the coupled fit, dotted lines equation 20 through "
+      "the symbols, dashed lines the published law.";
+  figure.caption = notation(
+      "Eq. 20 with {ν}_{c} fixed. Symbols: Eqs. 17 and 18 fitted run by run (bars: one standard error where known). Dotted: "
+      "staged fit through the symbols. Solid: after the coupled fit of Eq. 16. Dashed: Table 3 of the paper.");
+  figure.sources = {"calibration.json", "parameters.json"};
+  figure.columns = 2;
+  figure.panel_height = 200;
+
+  const auto& calibration = input.calibration;
+  const P published = published_parameters();
+  double from = calibration.nu_max, to = calibration.nu_min;
+  for (const fit::ShearFit& shear : calibration.shear) {
+    from = std::min(from, shear.nu);
+    to = std::max(to, shear.nu);
+  }
+  if (!(from < to)) {
+    from = calibration.nu_min;
+    to = calibration.nu_max;
+  }
+  for (const Quantity20& quantity : quantities) {
+    Panel panel;
+    panel.x.label = notation("volume fraction {ν}");
+    panel.y.label = notation(quantity.label);
+    panel.y.include = 0;
+    for (const Mode mode : {Mode::D2, Mode::D3}) {
+      Series points = per_run_points(input, mode, quantity);
+      if (!points.x.empty()) panel.series.push_back(std::move(points));
+    }
+    const auto add = [&](const char* label, const P& parameters, Colour colour, Line line) {
+      const ExponentialLaw<double>& law = parameters.*quantity.law;
+      panel.series.push_back(curve(plain(label), colour, line, from, to,
+                                   [&](double nu) { return law.value(nu, parameters.shear_nu_c); }));
+    };
+    add("published", published, Colour::ink, Line::dashed);
+    add("Eq. 20, staged", calibration.staged, Colour::blue, Line::dotted);
+    add("Eq. 20, final", calibration.parameters, Colour::vermillion, Line::solid);
+    figure.panels.push_back(panel);
+  }
+  return figure;
+}
+
+}  // namespace grainlaw::app::report

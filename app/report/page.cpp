@@ -1,0 +1,171 @@
+#include "app/report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <kainjow/mustache.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/report/svg_figure.hpp"
+
+namespace grainlaw::app::report {
+namespace {
+
+constexpr const char* kTemplate = R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8"/>
+<meta name="viewport" content="width=device-width, initial-scale=1"/>
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'"/>
+<title>{{title}}</title>
+<style>
+{{{style}}}</style>
+</head>
+<body>
+<header>
+<h1>{{title}}</h1>
+{{#lead}}
+{{{html}}}
+{{/lead}}
+<nav aria-label="Contents">
+<ol>
+{{#sections}}
+<li><a href="#{{id}}">{{heading}}</a></li>
+{{/sections}}
+</ol>
+</nav>
+</header>
+<main>
+{{#sections}}
+<section id="{{id}}" aria-labelledby="{{id}}-heading">
+<h2 id="{{id}}-heading">{{heading}}</h2>
+{{#blocks}}
+{{{html}}}
+{{/blocks}}
+</section>
+{{/sections}}
+</main>
+</body>
+</html>
+)";
+
+using kainjow::mustache::data;
+
+data html_list(const std::vector<std::string>& blocks) {
+  data list{data::type::list};
+  for (const std::string& block : blocks) list << data{"html", block};
+  return list;
+}
+
+std::string file_list(const std::vector<std::string>& files) {
+  std::string html;
+  for (const std::string& file : files) {
+    if (!html.empty()) html += ", ";
+    html += "<code>" + to_html(plain(file)) + "</code>";
+  }
+  return html;
+}
+
+/// JSON has no NaN: what is undefined becomes null.
+nlohmann::json number_list(const std::vector<double>& values) {
+  auto list = nlohmann::json::array();
+  for (const double value : values) {
+    if (std::isfinite(value)) {
+      list.push_back(value);
+    } else {
+      list.push_back(nullptr);
+    }
+  }
+  return list;
+}
+
+/// The figure's numbers, safe inside a <script> element: no '<', no line separator of JavaScript.
+std::string figure_data(const Figure& figure) {
+  nlohmann::ordered_json document;
+  document["figure"] = figure.id;
+  document["panels"] = nlohmann::json::array();
+  for (const Panel& panel : figure.panels) {
+    nlohmann::ordered_json entry{{"title", to_plain(panel.title)},
+                                 {"x", to_plain(panel.x.label)},
+                                 {"y", to_plain(panel.y.label)},
+                                 {"series", nlohmann::json::array()}};
+    for (const Series& series : panel.series) {
+      entry["series"].push_back(
+          {{"label", to_plain(series.label)}, {"x", number_list(series.x)}, {"y", number_list(series.y)}});
+    }
+    document["panels"].push_back(entry);
+  }
+  std::string safe;
+  for (const char c : document.dump(-1, ' ', /*ensure_ascii=*/true)) {
+    switch (c) {
+      case '<': safe += "\\u003c"; break;
+      case '>': safe += "\\u003e"; break;
+      case '&': safe += "\\u0026"; break;
+      default: safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string paragraph_html(const Text& text) { return "<p>" + to_html(text) + "</p>"; }
+
+std::string table_html(const Table& table) {
+  std::string html = "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" +
+                     escape_markup(to_plain(plain(table.caption))) + "\">\n<table>\n<caption>" +
+                     to_html(plain(table.caption));
+  if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
+  html += "</caption>\n<thead><tr>";
+  for (const Column& column : table.columns) {
+    html += fmt::format("<th scope=\"col\"{}>{}</th>", column.number ? " class=\"number\"" : "", to_html(column.heading));
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool number = i < table.columns.size() && table.columns[i].number;
+      const char* const tag = i == 0 ? "th" : "td";
+      html += fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "", number ? " class=\"number\"" : "",
+                          to_html(row[i]), tag);
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody>\n</table>\n</div>";
+}
+
+std::string figure_html(const Figure& figure) {
+  const RenderedFigure rendered = render_svg(figure);
+  std::string html = fmt::format("<figure id=\"{}\">\n<div class=\"scroll\">{}</div>\n<figcaption><b>{}.</b> {}", figure.id,
+                                 rendered.svg, to_html(plain(figure.title)), to_html(figure.caption));
+  if (rendered.undefined_points > 0) {
+    html += fmt::format(" <span class=\"source\">{} undefined points are not drawn.</span>", rendered.undefined_points);
+  }
+  if (rendered.outside_points > 0) {
+    html += fmt::format(" <span class=\"source\">{} points lie outside the axes.</span>", rendered.outside_points);
+  }
+  html += " <span class=\"source\">Drawn from " + file_list(figure.sources) + ".</span></figcaption>\n";
+  html += fmt::format("<script type=\"application/json\" id=\"{}-data\">{}</script>\n</figure>", figure.id,
+                      figure_data(figure));
+  return html;
+}
+
+std::string page_html(const Page& page) {
+  data sections{data::type::list};
+  for (const Section& section : page.sections) {
+    data entry;
+    entry.set("id", section.id);
+    entry.set("heading", section.heading);
+    entry.set("blocks", html_list(section.blocks));
+    sections << entry;
+  }
+  data root;
+  root.set("title", page.title);
+  root.set("style", page_style());
+  root.set("lead", html_list(page.lead));
+  root.set("sections", sections);
+  kainjow::mustache::mustache view{kTemplate};
+  return view.render(root);
+}
+
+}  // namespace grainlaw::app::report

@@ -1,0 +1,66 @@
+#include "app/report/page.hpp"
+
+namespace grainlaw::app::report {
+
+// k0..k6 are the colours of figure.hpp in order: the palette by Okabe and Ito, a little darker on white where its sky
+// blue and orange would be faint, a little lighter on dark ground.
+const char* page_style() {
+  return R"(:root {
+  color-scheme: light dark;
+  --ground: #ffffff; --text: #1b1b1b; --quiet: #5c5c5c; --rule: #d8d8d8; --grid: #ececec; --band: #f6f6f6; --link: #005a9c;
+  --k0: #1b1b1b; --k1: #0072b2; --k2: #d55e00; --k3: #009e73; --k4: #b2578f; --k5: #c98a00; --k6: #3a9bd3;
+}
+@media (prefers-color-scheme: dark) {
+  :root {
+    --ground: #14171a; --text: #e6e6e6; --quiet: #a3a8ad; --rule: #3b4046; --grid: #262a2f; --band: #1c2024; --link: #7cc4ff;
+    --k0: #e6e6e6; --k1: #4aa8e0; --k2: #ff8a3d; --k3: #2fc79a; --k4: #dd8fc0; --k5: #f0b429; --k6: #8fd0f5;
+  }
+}
+* { box-sizing: border-box; }
+html { background: var(--ground); color: var(--text); font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; }
+body { max-width: 62rem; margin: 0 auto; padding: 1.5rem 1rem 4rem; }
+h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .5rem; }
+h2 { font-size: 1.25rem; margin: 2.5rem 0 .75rem; padding-top: .75rem; border-top: 1px solid var(--rule); }
+p { max-width: 46rem; }
+a { color: var(--link); }
+code { font: .85em ui-monospace, "DejaVu Sans Mono", monospace; overflow-wrap: anywhere; }
+nav ol { columns: 2; padding-left: 1.5rem; margin: 1rem 0; font-size: .95rem; }
+figure { margin: 1.5rem 0 2rem; }
+figcaption { max-width: 56rem; font-size: .9rem; margin-top: .4rem; }
+.source { color: var(--quiet); }
+.warning { border-left: 4px solid var(--k2); padding-left: .75rem; }
+details { margin: 1rem 0; }
+summary { cursor: pointer; font-weight: 600; }
+.scroll { overflow-x: auto; }
+svg { display: block; width: 100%; min-width: 44rem; height: auto; font: 12px system-ui, "DejaVu Sans", sans-serif; }
+svg text { fill: var(--text); }
+svg .title { font-weight: 600; }
+svg .grid { fill: none; stroke: var(--grid); }
+svg .axis { fill: none; stroke: var(--quiet); stroke-width: .8; }
+.k0 { color: var(--k0); } .k1 { color: var(--k1); } .k2 { color: var(--k2); } .k3 { color: var(--k3); }
+.k4 { color: var(--k4); } .k5 { color: var(--k5); } .k6 { color: var(--k6); }
+table { border-collapse: collapse; font-size: .9rem; margin: 1rem 0 1.5rem; }
+caption { text-align: left; font-weight: 600; padding-bottom: .4rem; }
+caption .source { font-weight: 400; }
+th, td { padding: .2rem .7rem; text-align: left; vertical-align: baseline; font-weight: 400; }
+thead th { font-weight: 600; border-bottom: 1.5px solid var(--quiet); }
+tbody tr { border-bottom: 1px solid var(--rule); }
+tbody tr:nth-child(even) { background: var(--band); }
+.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+sub, sup { line-height: 0; font-size: 75%; }
+@media print {
+  :root {
+    --ground: #ffffff; --text: #000000; --quiet: #444444; --rule: #bbbbbb; --grid: #e8e8e8; --band: #ffffff; --link: #000000;
+    --k0: #000000; --k1: #0072b2; --k2: #d55e00; --k3: #009e73; --k4: #b2578f; --k5: #c98a00; --k6: #3a9bd3;
+  }
+  html { font-size: 10pt; }
+  body { max-width: none; padding: 0; }
+  svg { min-width: 0; }
+  .scroll { overflow: visible; }
+  figure, tbody tr { break-inside: avoid; }
+  h2, caption { break-after: avoid; }
+}
+)";
+}
+
+}  // namespace grainlaw::app::report

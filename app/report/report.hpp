@@ -1,0 +1,17 @@
+#pragma once
+// The report of a calibration's folder: one self-contained HTML page. It reads files, runs nothing and fits nothing.
+
+#include <filesystem>
+#include <string>
+
+namespace grainlaw::app {
+
+/// Writes the page about the folder `dir` to `html`. Throws Error when a file is missing (naming the command that makes
+/// it) and InvalidInput when one cannot be read.
+void write_report(const std::filesystem::path& dir, const std::filesystem::path& html);
+
+/// The parameters of `dir` as fixed-width text: parameter, symbol, ours +- standard error, published; words where a
+/// parameter is not identified. Throws like write_report.
+std::string summary_table(const std::filesystem::path& dir);
+
+}  // namespace grainlaw::app

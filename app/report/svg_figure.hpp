@@ -1,0 +1,19 @@
+#pragma once
+// A Figure as an inline SVG element: axes, ticks, lines, symbols, one legend above the panels (never over data).
+// Colours are the page's CSS variables, so that the figure follows light, dark and print.
+
+#include <string>
+
+#include "app/report/figure.hpp"
+
+namespace grainlaw::app::report {
+
+struct RenderedFigure {
+  std::string svg;
+  int undefined_points = 0;   ///< left out because x or y is not finite (or not positive on a logarithmic axis)
+  int outside_points = 0;     ///< symbols beyond a range that the figure fixes
+};
+
+RenderedFigure render_svg(const Figure& figure);
+
+}  // namespace grainlaw::app::report

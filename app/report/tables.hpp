@@ -1,0 +1,31 @@
+#pragma once
+// The tables of the report: ours beside what Imole et al. (2013) published, without a verdict.
+
+#include <string>
+
+#include "app/report/page.hpp"
+#include "app/report/report_input.hpp"
+
+namespace grainlaw::app::report {
+
+/// Every parameter: meaning, symbol, equation, ours +- one standard error, published, relative difference.
+Table parameter_comparison(const fit::Calibration& calibration);
+/// What the parameters mean: C*, phi_r, P*, s_max, beta_s, F_max, beta_F at round densities of the calibrated range.
+Table curve_comparison(const fit::Calibration& calibration);
+/// Stages of the fit: window, sizes, costs, termination.
+Table stage_table(const fit::Calibration& calibration);
+/// Misfit of the coupled fit per test and quantity.
+Table residual_table(const fit::Calibration& calibration);
+/// Bias and RMS of every prediction.
+Table prediction_table(const PredictionCase& prediction);
+/// Per run: seed, particles, rows, steps, seconds, largest energy ratio, energy residual and inertial number.
+Table run_table(const ReportInput& input);
+Table provenance_table(const ReportInput& input);
+
+/// The value of an estimate with its error, or its status in words.
+std::string estimate_text(const fit::Estimate& estimate);
+
+/// Fixed-width text of parameter_comparison's first columns, for a terminal.
+std::string parameter_summary(const fit::Calibration& calibration);
+
+}  // namespace grainlaw::app::report
