@@ -1,0 +1,71 @@
+#pragma once
+// What a calibration says: values, errors and their standing, stage by stage. Plain values, nothing of the solver.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/path.hpp"
+
+namespace grainlaw::fit {
+
+enum class Status {
+  fitted,          ///< free in the last stage that it appears in
+  fixed,           ///< not fitted by decision (Eq. (20)'s nu_c)
+  tied,            ///< follows from others by an identity
+  at_bound,        ///< ended on a physical bound; no standard error
+  not_identified,  ///< the data do not contain it; no value and no standard error
+};
+std::string to_string(Status status);
+
+struct Estimate {
+  double value = 0;           ///< not to be read when not identified
+  double standard_error = 0;  ///< cluster-robust over runs, see covariance.hpp; NaN unless fitted or tied
+  Status status = Status::not_identified;
+  std::string note;           ///< why, e.g. which experiment would identify it; may be empty
+};
+
+struct NamedEstimate {
+  std::string name;   ///< of parameter_table()
+  Estimate estimate;
+};
+
+/// Misfit of one test in one stage.
+struct TestResidual {
+  std::string test;
+  std::string quantity;     ///< "P_star", "s_par", "F_par", "C_star", ...
+  bool in_cost = true;      ///< false: shown, not fitted (the stage's window says why)
+  int rows = 0;             ///< rows that entered
+  int rows_excluded = 0;    ///< rows of the test outside the window (nu <= nu_c, strain window)
+  double rms = 0;           ///< root mean square of model - data in the unit of the quantity
+  double bias = 0;          ///< mean of model - data
+  double max_abs_data = 0;  ///< to normalise by
+};
+
+struct Stage {
+  std::string name;          ///< "coordination", "steady_pressure", "evolution", ...
+  std::string window;        ///< rows and weights in words, with numbers
+  int residuals = 0, free_parameters = 0, iterations = 0;
+  double initial_cost = 0, final_cost = 0;  ///< half the sum of squared weighted residuals
+  std::string termination;   ///< Ceres's word and message
+  bool converged = false;
+  double seconds = 0;
+  std::vector<TestResidual> tests;
+  std::vector<NamedEstimate> estimates;  ///< of the parameters free in this stage; a later stage may refine them
+};
+
+/// Eqs. (17) and (18) on one constant-volume test, and its steady means.
+struct ShearFit {
+  std::string test;
+  Mode mode = Mode::D2;
+  std::uint64_t seed = 0;
+  double nu = 0;                              ///< volume fraction of the test [-]
+  double eps_dev_max = 0;                     ///< deviatoric strain reached [-]
+  Estimate s_max, beta_s, F_max, beta_F;      ///< of the fits; one run, hence without standard error
+  double s_0 = 0, F_0 = 0;                    ///< start values, measured in the first row [-]
+  double s_steady = 0, F_steady = 0;          ///< steady means; NaN when the test ends before steady_from [-]
+  double C_star = 0, rattler_fraction = 0, P_star = 0;  ///< steady means, likewise [-]
+};
+
+}  // namespace grainlaw::fit
