@@ -51,7 +51,7 @@ void for_each_number(AnyState& s, const Scalar& visit, const Array& array, const
   for (auto* x : {&m.density, &m.stiffness, &m.contact_viscosity, &m.background_viscosity}) visit(*x);
   auto& e = s.ledger;
   for (auto* x : {&s.time, &e.W_box, &e.D_contact, &e.D_background, &e.E_start, &e.E_kin_start}) visit(*x);
-  for (auto* x : {&s.sums.box_power, &s.sums.contact_power, &s.sums.E_pot}) visit(*x);
+  for (auto* x : {&s.sums.box_power, &s.sums.contact_power, &s.sums.E_pot, &s.sums.drag_power}) visit(*x);
   for (auto* H : {&s.packing.H, &s.ref_H}) {
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) visit((*H)(row, column));
