@@ -1,7 +1,5 @@
 #include "app/files/schema_validator.hpp"
 
-// GCC 12 warns of its own std::string (bug 105329) when this library is inlined.
-#pragma GCC diagnostic ignored "-Wrestrict"
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
 #include <valijson/schema.hpp>
 #include <valijson/schema_parser.hpp>
