@@ -60,9 +60,10 @@ inline void visit_contacts(const ForceField& field, std::size_t i, const Visit& 
     contact.j = j;
     contact.distance = std::sqrt(d2);
     contact.delta = reach - contact.distance;
-    contact.nx = dx / contact.distance;
-    contact.ny = dy / contact.distance;
-    contact.nz = dz / contact.distance;
+    const double inverse = 1 / contact.distance;
+    contact.nx = dx * inverse;
+    contact.ny = dy * inverse;
+    contact.nz = dz * inverse;
     if (!std::isfinite(contact.nx + contact.ny + contact.nz)) {  // at zero distance, or where its square underflows
       throw Error(fmt::format("spheres {} and {} share one position; move one of them", field.id[i], field.id[j]));
     }
