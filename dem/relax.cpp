@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "dem/run_watch.hpp"
@@ -15,32 +14,38 @@ namespace grainlaw::dem {
 namespace {
 
 // FIRE with the semi-implicit Euler step and the half step back of Guénolé et al., Comput. Mater. Sci. 175, 109584
-// (2020). Forces are measured in units of k (they are overlaps, in m) and the minimiser's time in units of
-// sqrt(mass/k), so that the step is a pure number.
+// (2020). Forces are measured in units of k (they are overlaps, in m), time in units of sqrt(mass/k): the step is a
+// pure number. Masses are the minimiser's own: m_i = |K_i|, K_i = sum_c n n^T, a bound of the stiffness that holds
+// sphere i. Since the sum over contacts of ((u_i - u_j).n)^2 is at most twice sum_i |K_i| u_i^2, no mode is faster than
+// sqrt(2) whatever the sizes, and steps up to sqrt(2) are stable.
 constexpr double kFirstStep = 0.1;
-constexpr double kSmallestStep = 0.002;
-constexpr double kLargestStep = 0.6;
+constexpr double kSmallestStep = 0.01;
+constexpr double kLargestStep = 1.0;
 constexpr double kGrowth = 1.1, kShrink = 0.5;
-constexpr double kMixing = 0.25, kMixingDecay = 0.99;
-constexpr int kDelay = 20;  // passes downhill before the step grows
+constexpr double kMixing = 0.1, kMixingDecay = 0.99;
+constexpr int kDelay = 10;  // passes downhill before the step grows
+
+// Below this net force over k <r>, positions are too coarse for any criterion: an unjammed packing whose last contacts
+// touch by rounding only.
+constexpr double kRounding = 1e-13;
 
 /// Totals of one force pass; `f` is the net force on a sphere over k, `g` = f/sqrt(m), `w` = sqrt(m) v.
 struct Totals {
-  double gw = 0, gg = 0, ww = 0;  ///< sums of g.w, g.g, w.w
-  double overlap = 0;             ///< sum over contact meetings (twice per contact) [m]
+  double gw = 0, gg = 0, ww = 0;  // sums of g.w, g.g, w.w
+  double overlap = 0;             // sum over contact meetings (twice per contact) [m]
   std::size_t meetings = 0;
-  double f2_max = 0;              ///< largest f.f [m^2]
+  double f2_max = 0;              // largest f.f [m^2]
 };
 
 struct Minimiser {
   Packing& packing;
   ThreadTeam team;
   NeighbourList list;
-  std::vector<Eigen::Vector3d> shift;  ///< H n of each image of the list [m]
-  std::vector<Row> place;              ///< x, y, z, r [m]
-  std::vector<Row> reference;          ///< x, y, z at the last rebuild of the list [m]
-  std::vector<Row> w, g;               ///< see Totals; [3] of w is 1/sqrt(m)
-  std::vector<Totals> parts;           ///< one per block
+  std::vector<Eigen::Vector3d> shift;  // H n of each image of the list [m]
+  std::vector<Row> place;              // x, y, z, r [m]
+  std::vector<Row> reference;          // x, y, z at the last rebuild of the list [m]
+  std::vector<Row> w, g;               // see Totals; [3] of w is 1/sqrt(m)
+  std::vector<Totals> parts;           // one per block
 
   Minimiser(Packing& p, int threads, double skin) : packing(p), team(threads) {
     list.skin = skin;
@@ -48,11 +53,8 @@ struct Minimiser {
     w.resize(p.size());
     g.resize(p.size());
     parts.resize(block_count(p.size()));
-    // A sphere's stiffness grows with its number of contacts, hence with its surface: mass ~ r evens out the
-    // frequencies of small and large spheres.
-    const double mean = mean_radius(p);
-    for (std::size_t i = 0; i < p.size(); ++i) w[i] = {0, 0, 0, std::sqrt(mean / p.radius[i])};
     rebuild();
+    rest();
   }
 
   template <class Body>
@@ -85,7 +87,7 @@ struct Minimiser {
     }
   }
 
-  /// Adds a/sqrt(m) * w to the positions; rebuilds the list when a sphere has gone too far.
+  /// Calls update(i) for each sphere, which may move it; rebuilds the list when one has gone too far.
   template <class Update>
   void move(const Update& update) {
     std::vector<double> moved2(parts.size());
@@ -107,6 +109,41 @@ struct Minimiser {
     }
   }
 
+  /// Calls visit(j, dx, dy, dz, d, delta) for each contact of sphere i.
+  template <class Visit>
+  void visit_contacts(std::size_t i, const Visit& visit) const {
+    const Row& pi = place[i];
+    for (std::size_t c = list.first[i]; c < list.first[i + 1]; ++c) {
+      const Row& pj = place[list.j[c]];
+      const Eigen::Vector3d& image = shift[list.image[c]];
+      const double dx = pi[0] - pj[0] - image[0], dy = pi[1] - pj[1] - image[1], dz = pi[2] - pj[2] - image[2];
+      const double reach = pi[3] + pj[3];
+      const double d2 = dx * dx + dy * dy + dz * dz;
+      if (!(d2 < reach * reach)) continue;
+      const double d = std::sqrt(d2);
+      if (!std::isfinite(dx / d + dy / d + dz / d)) {  // at zero distance, or where its square underflows
+        throw Error(fmt::format("spheres {} and {} share one position; move one of them", packing.id[i],
+                                packing.id[list.j[c]]));
+      }
+      visit(dx / d, dy / d, dz / d, reach - d);
+    }
+  }
+
+  /// Stops the spheres and gives them the masses of their present contacts; at least the one of a single contact.
+  void rest() {
+    for_each_block([&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        double xx = 0, yy = 0, zz = 0, yz = 0, xz = 0, xy = 0;
+        visit_contacts(i, [&](double nx, double ny, double nz, double) {
+          xx += nx * nx, yy += ny * ny, zz += nz * nz, yz += ny * nz, xz += nx * nz, xy += nx * ny;
+        });
+        yz = std::abs(yz), xz = std::abs(xz), xy = std::abs(xy);
+        const double mass = std::max({1.0, xx + xy + xz, xy + yy + yz, xz + yz + zz});  // largest row sum
+        w[i] = {0, 0, 0, 1 / std::sqrt(mass)};
+      }
+    });
+  }
+
   Totals forces() {
     for_each_block([&](std::size_t block, std::size_t begin, std::size_t end) { parts[block] = block_forces(begin, end); });
     Totals sum;
@@ -124,28 +161,14 @@ struct Minimiser {
   Totals block_forces(std::size_t begin, std::size_t end) {
     Totals sum;
     for (std::size_t i = begin; i < end; ++i) {
-      const Row& pi = place[i];
       double fx = 0, fy = 0, fz = 0;
-      for (std::size_t c = list.first[i]; c < list.first[i + 1]; ++c) {
-        const Row& pj = place[list.j[c]];
-        const Eigen::Vector3d& image = shift[list.image[c]];
-        const double dx = pi[0] - pj[0] - image[0], dy = pi[1] - pj[1] - image[1], dz = pi[2] - pj[2] - image[2];
-        const double reach = pi[3] + pj[3];
-        const double d2 = dx * dx + dy * dy + dz * dz;
-        if (!(d2 < reach * reach)) continue;
-        const double d = std::sqrt(d2);
-        const double delta = reach - d;
-        const double scale = delta / d;
-        if (!std::isfinite(scale * dx + scale * dy + scale * dz)) {
-          throw Error(fmt::format("spheres {} and {} share one position; move one of them", packing.id[i],
-                                  packing.id[list.j[c]]));
-        }
-        fx += scale * dx;
-        fy += scale * dy;
-        fz += scale * dz;
+      visit_contacts(i, [&](double nx, double ny, double nz, double delta) {
+        fx += delta * nx;
+        fy += delta * ny;
+        fz += delta * nz;
         sum.overlap += delta;
         ++sum.meetings;
-      }
+      });
       const Row& wi = w[i];
       const double inverse = wi[3];
       g[i] = {fx * inverse, fy * inverse, fz * inverse, 0};
@@ -168,27 +191,27 @@ struct Pacing {
 
 /// One FIRE iteration from the forces that `totals` belongs to.
 void iterate(Minimiser& m, const Totals& totals, Pacing& pacing) {
-  const bool uphill = totals.gw < 0;
-  double back = 0;
-  if (uphill) {
-    back = 0.5 * pacing.dt;
+  if (totals.gw < 0) {  // uphill: half a step back, rest, and on with new forces
+    const double back = 0.5 * pacing.dt;
+    m.move([&](std::size_t i) {
+      for (std::size_t a = 0; a < 3; ++a) m.place[i][a] -= back * m.w[i][a] * m.w[i][3];
+    });
+    m.rest();
     pacing = {std::max(kSmallestStep, pacing.dt * kShrink), kMixing, 0};
-  } else if (++pacing.downhill > kDelay) {
+    return;
+  }
+  if (++pacing.downhill > kDelay) {
     pacing.dt = std::min(kLargestStep, pacing.dt * kGrowth);
     pacing.mixing *= kMixingDecay;
   }
+  // w + dt g, turned towards g: its length is known from the totals
   const double dt = pacing.dt;
-  const double w2 = uphill ? dt * dt * totals.gg : totals.ww + 2 * dt * totals.gw + dt * dt * totals.gg;
-  const double along = totals.gg > 0 ? pacing.mixing * std::sqrt(std::max(0.0, w2) / totals.gg) : 0;
-  const double keep = 1 - pacing.mixing;
+  const double w2 = totals.ww + 2 * dt * totals.gw + dt * dt * totals.gg;
+  const double keep = 1 - pacing.mixing, along = pacing.mixing * std::sqrt(w2 / totals.gg);
   m.move([&](std::size_t i) {
-    Row& wi = m.w[i];
-    const Row& gi = m.g[i];
     for (std::size_t a = 0; a < 3; ++a) {
-      const double before = uphill ? 0 : wi[a];
-      const double after = keep * (before + dt * gi[a]) + along * gi[a];
-      m.place[i][a] += (dt * after - back * wi[a]) * wi[3];
-      wi[a] = after;
+      m.w[i][a] = keep * (m.w[i][a] + dt * m.g[i][a]) + along * m.g[i][a];
+      m.place[i][a] += dt * m.w[i][a] * m.w[i][3];
     }
   });
 }
@@ -225,6 +248,7 @@ Relaxation relax(State& state, const EngineOptions& engine, const RelaxOptions& 
   const double k = state.material.stiffness;
   RunWatch watch(control, "relaxation", "particle-steps");
   Minimiser minimiser(packing, engine.threads, engine.skin * mean_radius(packing));
+  const double rounding = kRounding * k * mean_radius(packing);
   Pacing pacing;
   double first_ratio = 0;
   for (;;) {
@@ -233,7 +257,7 @@ Relaxation relax(State& state, const EngineOptions& engine, const RelaxOptions& 
     result.max_net_force = k * std::sqrt(totals.f2_max);
     result.mean_contact_force = totals.meetings ? k * totals.overlap / static_cast<double>(totals.meetings) : 0;
     if (!std::isfinite(result.max_net_force)) throw Error("relaxation: forces are no longer finite");
-    result.relaxed = result.max_net_force <= options.tolerance * result.mean_contact_force;
+    result.relaxed = result.max_net_force <= std::max(options.tolerance * result.mean_contact_force, rounding);
     if (result.relaxed || result.passes >= options.max_passes) break;
     const double ratio = result.max_net_force / result.mean_contact_force;
     if (first_ratio == 0) first_ratio = ratio;
