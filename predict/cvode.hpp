@@ -1,6 +1,6 @@
 #pragma once
 // SUNDIALS CVODE for a small system dy/dt = f(t, y), y(t_0) = y_0, behind a header without SUNDIALS in it.
-//   adams: variable order 1-12, functional iteration; bdf: variable order 1-5, Newton with a dense matrix
+//   adams: variable order 1-6, functional iteration; bdf: variable order 1-5, Newton with a dense matrix
 // After every call y must be finite and t exactly the requested one, otherwise the call has failed: the library is
 // known to report success with a wrong y when its step vanishes, and to loop when a root function is not a number.
 
