@@ -80,8 +80,8 @@ bool CsvReader::next_line() {
 }
 
 bool CsvReader::next(std::vector<double>& values) {
+  ++row_;  // before reading, so that messages name the row that is being read
   if (!next_line()) return false;
-  ++row_;
   if (row_ > kMaxCsvRows) refuse("", fmt::format("more than {} rows; thin the series", kMaxCsvRows));
   const auto fields = split_fields(line_);
   if (fields.size() != header_.size()) {

@@ -1,0 +1,144 @@
+#include "app/files/calibration_file.hpp"
+
+#include <fmt/format.h>
+
+#include "app/files/estimate_json.hpp"
+#include "app/one_line.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+OrderedJson residual_to_json(const fit::TestResidual& r) {
+  return {{"test", r.test},
+          {"quantity", r.quantity},
+          {"in_cost", r.in_cost},
+          {"rows", r.rows},
+          {"rows_excluded", r.rows_excluded},
+          {"rms", number_or_null(r.rms)},
+          {"bias", number_or_null(r.bias)},
+          {"max_abs_data", number_or_null(r.max_abs_data)}};
+}
+
+fit::TestResidual residual_from_json(const Json& object) {
+  fit::TestResidual r;
+  r.test = object.at("test");
+  r.quantity = object.at("quantity");
+  r.in_cost = object.at("in_cost");
+  r.rows = object.at("rows");
+  r.rows_excluded = object.at("rows_excluded");
+  r.rms = number_or_nan(object.at("rms"));
+  r.bias = number_or_nan(object.at("bias"));
+  r.max_abs_data = number_or_nan(object.at("max_abs_data"));
+  return r;
+}
+
+OrderedJson stage_to_json(const fit::Stage& stage) {
+  OrderedJson object{{"name", stage.name},
+                     {"window", stage.window},
+                     {"residuals", stage.residuals},
+                     {"free_parameters", stage.free_parameters},
+                     {"iterations", stage.iterations},
+                     {"initial_cost", number_or_null(stage.initial_cost)},
+                     {"final_cost", number_or_null(stage.final_cost)},
+                     {"termination", stage.termination},
+                     {"converged", stage.converged},
+                     {"seconds", stage.seconds}};
+  OrderedJson& estimates = object["estimates"] = OrderedJson::object();
+  for (const fit::NamedEstimate& named : stage.estimates) estimates[named.name] = estimate_to_json(named.estimate);
+  OrderedJson& tests = object["tests"] = OrderedJson::array();
+  for (const fit::TestResidual& residual : stage.tests) tests.push_back(residual_to_json(residual));
+  return object;
+}
+
+fit::Stage stage_from_json(const Json& object) {
+  fit::Stage stage;
+  stage.name = object.at("name");
+  stage.window = object.at("window");
+  stage.residuals = object.at("residuals");
+  stage.free_parameters = object.at("free_parameters");
+  stage.iterations = object.at("iterations");
+  stage.initial_cost = number_or_nan(object.at("initial_cost"));
+  stage.final_cost = number_or_nan(object.at("final_cost"));
+  stage.termination = object.at("termination");
+  stage.converged = object.at("converged");
+  stage.seconds = object.at("seconds");
+  for (const auto& item : object.at("estimates").items()) stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
+  for (const Json& residual : object.at("tests")) stage.tests.push_back(residual_from_json(residual));
+  return stage;
+}
+
+// The numbers of a shear fit that are no estimates, under their JSON keys.
+constexpr std::array<std::pair<const char*, double fit::ShearFit::*>, 9> kShearNumbers{{
+    {"nu", &fit::ShearFit::nu},
+    {"eps_dev_max", &fit::ShearFit::eps_dev_max},
+    {"s_0", &fit::ShearFit::s_0},
+    {"F_0", &fit::ShearFit::F_0},
+    {"s_steady", &fit::ShearFit::s_steady},
+    {"F_steady", &fit::ShearFit::F_steady},
+    {"C_star", &fit::ShearFit::C_star},
+    {"rattler_fraction", &fit::ShearFit::rattler_fraction},
+    {"P_star", &fit::ShearFit::P_star},
+}};
+constexpr std::array<std::pair<const char*, fit::Estimate fit::ShearFit::*>, 4> kShearEstimates{{
+    {"s_max", &fit::ShearFit::s_max},
+    {"beta_s", &fit::ShearFit::beta_s},
+    {"F_max", &fit::ShearFit::F_max},
+    {"beta_F", &fit::ShearFit::beta_F},
+}};
+
+OrderedJson shear_to_json(const fit::ShearFit& shear) {
+  OrderedJson object{{"test", shear.test}, {"mode", to_string(shear.mode)}, {"seed", shear.seed}};
+  for (const auto& [key, member] : kShearNumbers) object[key] = number_or_null(shear.*member);
+  for (const auto& [key, member] : kShearEstimates) object[key] = estimate_to_json(shear.*member);
+  return object;
+}
+
+fit::ShearFit shear_from_json(const Json& object) {
+  fit::ShearFit shear;
+  shear.test = object.at("test");
+  for (const Mode mode : {Mode::ISO, Mode::UNI, Mode::D2, Mode::D3, Mode::tensor}) {
+    if (to_string(mode) == object.at("mode")) shear.mode = mode;
+  }
+  shear.seed = object.at("seed");
+  for (const auto& [key, member] : kShearNumbers) shear.*member = number_or_nan(object.at(key));
+  for (const auto& [key, member] : kShearEstimates) shear.*member = estimate_from_json(object.at(key));
+  return shear;
+}
+
+}  // namespace
+
+void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
+                       const fit::CalibrationOptions& options, const std::string& dataset_digest, const OrderedJson& provenance) {
+  OrderedJson document;
+  document["format"] = "grainlaw calibration";
+  document["format_version"] = 1;
+  document["coupling"] = to_string(calibration.coupling);
+  document["converged"] = calibration.converged;
+  document["options"] = {{"iso_nu_min", options.iso_nu_min},         {"rate_window", options.rate_window},
+                         {"steady_from", options.steady_from},       {"max_step", options.max_step},
+                         {"pressure_scale", options.pressure_scale}, {"stress_scale", options.stress_scale},
+                         {"fabric_scale", options.fabric_scale}};
+  document["dataset_digest"] = dataset_digest;
+  OrderedJson& stages = document["stages"] = OrderedJson::array();
+  for (const fit::Stage& stage : calibration.stages) stages.push_back(stage_to_json(stage));
+  OrderedJson& shear = document["shear"] = OrderedJson::array();
+  for (const fit::ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
+  document["provenance"] = provenance;
+  write_json(file, document);
+}
+
+void read_calibration(const std::filesystem::path& file, fit::Calibration& calibration) {
+  const Json document = read_json(file, JsonSource::own);
+  try {
+    for (const Json& stage : document.at("stages")) calibration.stages.push_back(stage_from_json(stage));
+    for (const Json& shear : document.at("shear")) calibration.shear.push_back(shear_from_json(shear));
+  } catch (const Json::exception& error) {
+    throw InvalidInput(fmt::format("{}: is no calibration.json of this version: {}; run grainlaw calibrate again",
+                                   one_line(file.string(), 200), one_line(error.what(), 200)));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", one_line(file.string(), 200), error.what()));
+  }
+}
+
+}  // namespace grainlaw::app

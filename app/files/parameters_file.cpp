@@ -1,0 +1,136 @@
+#include "app/files/parameters_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "app/files/estimate_json.hpp"
+#include "app/files/schema.hpp"
+#include "app/one_line.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+OrderedJson covariance_to_json(const fit::Calibration& c) {
+  std::vector<std::size_t> present;
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    if (c.covariance.rows() > k && c.covariance(k, k) > 0) present.push_back(i);
+  }
+  OrderedJson names = OrderedJson::array(), matrix = OrderedJson::array();
+  for (const std::size_t i : present) {
+    names.push_back(parameter_table()[i].name);
+    OrderedJson row = OrderedJson::array();
+    for (const std::size_t j : present) row.push_back(c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    matrix.push_back(row);
+  }
+  return {{"names", names}, {"matrix", matrix}};
+}
+
+void read_covariance(const Json& object, Eigen::MatrixXd& covariance) {
+  const Json &names = object["names"], &matrix = object["matrix"];
+  std::vector<Eigen::Index> index;
+  for (const Json& name : names) index.push_back(static_cast<Eigen::Index>(parameter_index(name)));
+  if (matrix.size() != index.size()) throw InvalidInput("covariance.matrix: needs one row for each of covariance.names");
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    if (matrix[i].size() != index.size()) throw InvalidInput(fmt::format("covariance.matrix[{}]: needs {} numbers", i, index.size()));
+    for (std::size_t j = 0; j < index.size(); ++j) covariance(index[i], index[j]) = matrix[i][j].get<double>();
+  }
+}
+
+}  // namespace
+
+void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters) {
+  const fit::Calibration& c = parameters.calibration;
+  const auto values = fields(c.parameters);
+  OrderedJson document;
+  document["format"] = "grainlaw parameters";
+  document["format_version"] = 1;
+  document["coupling"] = to_string(c.coupling);
+  document["converged"] = c.converged;
+  OrderedJson& table = document["parameters"] = OrderedJson::object();
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const ParameterInfo& info = parameter_table()[i];
+    const fit::Estimate& estimate = c.estimates[i];
+    OrderedJson entry = estimate_to_json(estimate);
+    // the law's own value, so that what is predicted is what was fitted
+    if (estimate.status != fit::Status::not_identified) entry["value"] = *values[i];
+    entry["symbol"] = info.symbol;
+    entry["equation"] = info.equation;
+    table[info.name] = entry;
+  }
+  document["covariance"] = covariance_to_json(c);
+  document["ranges"] = {{"nu", {c.nu_min, c.nu_max}}, {"eps_dev", {0.0, c.eps_dev_max}}, {"eps_vol", {0.0, c.eps_vol_max}}};
+  if (!parameters.dataset_digest.empty()) document["dataset_digest"] = parameters.dataset_digest;
+  if (!parameters.provenance.is_null()) document["provenance"] = OrderedJson(parameters.provenance);
+  write_json(file, document);
+}
+
+ParametersFile read_parameters(const std::filesystem::path& file) {
+  const std::string name = one_line(file.string(), 200);
+  const Json document = read_json(file, JsonSource::own);
+  check_schema(document, Schema::parameters, name);
+  ParametersFile result;
+  fit::Calibration& c = result.calibration;
+  c.coupling = document["coupling"] == "single" ? Coupling::single : Coupling::energy;
+  c.converged = document.value("converged", false);
+  c.parameters = start_parameters();
+  c.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
+  for (fit::Estimate& estimate : c.estimates) {
+    estimate = {std::nan(""), std::nan(""), fit::Status::not_identified, "not in the file"};
+  }
+  try {
+    const auto values = fields(c.parameters);
+    for (const auto& item : document["parameters"].items()) {
+      const std::size_t i = parameter_index(item.key());
+      fit::Estimate& estimate = c.estimates[i];
+      const ParameterInfo& info = parameter_table()[i];
+      try {
+        estimate = estimate_from_json(item.value());
+      } catch (const InvalidInput& error) {
+        throw InvalidInput(fmt::format("parameters.{}.{}", info.name, error.what()));
+      }
+      if (estimate.status == fit::Status::not_identified) continue;
+      if (!(estimate.value >= info.lower && estimate.value <= info.upper)) {
+        throw InvalidInput(fmt::format("parameters.{}.value: {} is outside its bounds [{}, {}]", info.name, estimate.value, info.lower, info.upper));
+      }
+      *values[i] = estimate.value;
+    }
+    if (document.contains("covariance")) read_covariance(document["covariance"], c.covariance);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", name, error.what()));
+  }
+  const Json& ranges = document["ranges"];
+  c.nu_min = ranges["nu"][0];
+  c.nu_max = ranges["nu"][1];
+  c.eps_dev_max = ranges["eps_dev"][1];
+  c.eps_vol_max = ranges["eps_vol"][1];
+  result.dataset_digest = document.value("dataset_digest", "");
+  result.provenance = document.value("provenance", Json());
+  return result;
+}
+
+void require_parameters(const ParametersFile& parameters, predict::Model model, const std::string& name) {
+  std::vector<std::string> needed;
+  for (const char* group : {"coordination", "rattlers", "pressure", "shear.nu_c", "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"}) {
+    needed.emplace_back(group);
+  }
+  if (model == predict::Model::evolution) {
+    needed.emplace_back(parameters.calibration.coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2");
+  }
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const std::string parameter = parameter_table()[i].name;
+    for (const std::string& group : needed) {
+      if (parameter != group && !parameter.starts_with(group + ".")) continue;
+      const fit::Estimate& estimate = parameters.calibration.estimates[i];
+      if (estimate.status == fit::Status::not_identified) {
+        throw InvalidInput(fmt::format("{}: parameters.{}: is not identified and the {} model needs it{}{}; calibrate with tests that contain it",
+                                       name, parameter, to_string(model), estimate.note.empty() ? "" : ": ", estimate.note));
+      }
+    }
+  }
+}
+
+}  // namespace grainlaw::app
