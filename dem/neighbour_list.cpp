@@ -198,7 +198,8 @@ double allowed_displacement(const NeighbourList& list, const Eigen::Matrix3d& re
   if (allowed < 0.25 * list.skin) {
     const Eigen::Matrix3d square = stretch.transpose() * stretch;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(square, Eigen::EigenvaluesOnly);
-    sigma_min = std::sqrt(std::max(0.0, eigen.eigenvalues()(0)));
+    // at most 1: a cell that grows adds less to the gap of small spheres than to that of the largest
+    sigma_min = std::min(1.0, std::sqrt(std::max(0.0, eigen.eigenvalues()(0))));
     allowed = (sigma_min * (reach + list.skin) - reach) / 2;
   }
   return allowed;

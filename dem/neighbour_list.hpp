@@ -2,8 +2,8 @@
 // Full neighbour list of a periodic, possibly sheared cell: every sphere lists all spheres and images (its own
 // included) nearer than r_i + r_j + skin, sorted by (j, image). Each entry knows its image by the integer offset n:
 //   x_ij = H (s_i - s_j - n)
-// A list is valid as long as no unlisted pair can touch: sigma_min(H H_ref^-1) (R + skin) - 2u >= R for R = 2 r_max,
-// u the largest distance |H (s - s_ref)| that a sphere moved against the cell since the rebuild.
+// A list is valid as long as no unlisted pair can touch: min(1, sigma_min(H H_ref^-1)) (R + skin) - 2u >= R for
+// R = 2 r_max, u the largest distance |H (s - s_ref)| that a sphere moved against the cell since the rebuild.
 
 #include <cstdint>
 #include <vector>
