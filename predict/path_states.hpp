@@ -12,6 +12,7 @@ namespace grainlaw::predict {
 struct PathStates {
   std::vector<LawState<double>> states;  ///< one for each point reached, in their order
   bool unjammed = false;                 ///< the states end because P or nu fell to that of jamming
+  OutputPoint unjammed_at;               ///< where, when `unjammed`
   SolverStatistics statistics;           ///< without `seconds`
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -83,8 +84,14 @@ PredictedRow row_at(const StraightSegment& segment, const OutputPoint& point, do
   return row;
 }
 
-/// One line for each way in which `rows` leave `range`, naming the farthest row.
-std::vector<std::string> range_warnings(const std::vector<PredictedRow>& rows, const ValidRange& range) {
+bool is_tensile(const PredictedRow& row) {
+  if (row.s_dev < 1.5) return false;  // the smallest principal value of sigma' is at least -(2/3) s_dev P
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor_of(row.state.sigma), Eigen::EigenvaluesOnly);
+  return row.state.P + solver.eigenvalues().minCoeff() < 0;
+}
+
+/// One line for each way in which `rows` leave `range`, naming the farthest row, or the stresses that grains can carry.
+std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const ValidRange& range) {
   constexpr double slack = 1e-9;  // rounding of a path that ends at the limit
   double nu_low = range.nu_min, nu_high = range.nu_max, eps_dev = range.eps_dev_max;
   for (const PredictedRow& row : rows) {
@@ -102,6 +109,14 @@ std::vector<std::string> range_warnings(const std::vector<PredictedRow>& rows, c
   if (eps_dev > range.eps_dev_max + slack) {
     warnings.push_back(
         fmt::format("eps_dev = {:.4g} lies beyond the calibrated strain {:.4g}", eps_dev, range.eps_dev_max));
+  }
+  for (const PredictedRow& row : rows) {
+    if (!is_tensile(row)) continue;
+    warnings.push_back(
+        fmt::format("s_dev = {:.4g} at nu = {:.4g}: a principal stress is tensile, which grains without "
+                    "cohesion cannot carry",
+                    row.s_dev, row.nu));
+    break;
   }
   return warnings;
 }
@@ -143,6 +158,7 @@ Prediction predict(Model model, const LawParameters<double>& parameters, Couplin
   Prediction prediction;
   prediction.model = model;
   prediction.unjammed = path.unjammed;
+  prediction.unjammed_at = path.unjammed_at;
   prediction.statistics = path.statistics;
   prediction.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
 
@@ -161,7 +177,7 @@ Prediction predict(Model model, const LawParameters<double>& parameters, Couplin
     }
     prediction.rows.push_back(row_at(segments[k], points[i], path_before, path.states[i], N));
   }
-  prediction.warnings = range_warnings(prediction.rows, range);
+  prediction.warnings = warnings_of(prediction.rows, range);
   return prediction;
 }
 

@@ -62,11 +62,13 @@ struct Prediction {
   Model model = Model::evolution;
   std::vector<PredictedRow> rows;  ///< ends early when the state unjams
   SolverStatistics statistics;
-  bool unjammed = false;  ///< P fell to zero (1e-12 of its start) or nu to pressure.nu_c; rows end before it
+  bool unjammed = false;    ///< P fell to zero (1e-12 of its start) or nu to pressure.nu_c; rows end before it
+  OutputPoint unjammed_at;  ///< where, when `unjammed`
   std::vector<std::string> warnings;  ///< e.g. "nu = 0.85 lies outside the calibrated range 0.68-0.82"
 };
 
-/// Calibrated ranges, for the warnings.
+/// Calibrated ranges, for the warnings: one for each way in which a prediction leaves them, and one where a principal
+/// stress turns tensile, which Eq. (16) does not exclude near unjamming.
 struct ValidRange {
   double nu_min = 0, nu_max = 1;  ///< volume fraction [-]
   double eps_dev_max = 1e300;     ///< deviatoric strain from the start of a test [-]

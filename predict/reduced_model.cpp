@@ -47,6 +47,7 @@ PathStates reduced_states(const LawParameters<double>& parameters, const std::ve
       const double e = points[next].e;
       if (e >= jammed_until) {
         out.unjammed = true;
+        out.unjammed_at = {static_cast<int>(k), jammed_until};
         return out;
       }
       const double nu = segment.nu(e);
@@ -57,6 +58,7 @@ PathStates reduced_states(const LawParameters<double>& parameters, const std::ve
     if (next == points.size()) break;
     if (segment.length >= jammed_until) {
       out.unjammed = true;
+      out.unjammed_at = {static_cast<int>(k), jammed_until};
       break;
     }
     corner = ratios_at(parameters, corner, direction, segment.nu(segment.length), segment.length);
