@@ -82,13 +82,13 @@ class LineReader {
   std::ifstream in_;
 };
 
-/// Calls visit(field number, field) for each field of the line; returns their number.
+/// Calls visit(field number, field) for each field of the line.
 template <class Visit>
-std::size_t split(std::string_view line, const Visit& visit) {
+void split(std::string_view line, const Visit& visit) {
   for (std::size_t field = 0;; ++field) {
     const std::size_t comma = line.find(',');
     visit(field, trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return field + 1;
+    if (comma == std::string_view::npos) return;
     line.remove_prefix(comma + 1);
   }
 }
@@ -136,8 +136,12 @@ struct Sphere {
 
 Sphere read_row(const std::filesystem::path& file, std::size_t row, std::string_view line, const std::vector<Column>& order) {
   Sphere sphere;
-  const std::size_t fields = split(line, [&](std::size_t field, std::string_view text) {
-    if (field >= order.size()) return;
+  const auto fields = static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
+  if (fields != order.size()) {
+    throw refusal(file, row, "", fmt::format("has {} fields, the header has {} (is a decimal comma in use?)", fields,
+                                             order.size()));
+  }
+  split(line, [&](std::size_t field, std::string_view text) {
     const Column column = order[field];
     if (column == id) {
       const auto name = parse<std::int64_t>(text);
@@ -151,10 +155,6 @@ Sphere read_row(const std::filesystem::path& file, std::size_t row, std::string_
     if (column == r && !(*value > 0)) throw refusal(file, row, "r", quoted(text) + " is not positive");
     sphere.value[column] = *value;
   });
-  if (fields != order.size()) {
-    throw refusal(file, row, "", fmt::format("has {} fields, the header has {} (is a decimal comma in use?)", fields,
-                                             order.size()));
-  }
   return sphere;
 }
 
