@@ -6,7 +6,8 @@
 
 namespace grainlaw::app::report {
 
-Series dem_symbols(const TestRecord& test, Quantity x, Quantity y, int points, Text label, Colour colour, Marker marker) {
+Series dem_symbols(const TestRecord& test, Quantity x, Quantity y, int points, Text label, Colour colour,
+                   Marker marker) {
   Series series;
   series.label = std::move(label);
   series.colour = colour;

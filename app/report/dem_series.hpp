@@ -12,7 +12,8 @@ namespace grainlaw::app::report {
 using Quantity = double Observation::*;
 
 /// About `points` rows of `test`, evenly spaced, as symbols of `y` against `x`.
-Series dem_symbols(const TestRecord& test, Quantity x, Quantity y, int points, Text label, Colour colour, Marker marker);
+Series dem_symbols(const TestRecord& test, Quantity x, Quantity y, int points, Text label, Colour colour,
+                   Marker marker);
 
 /// Seeds of the tests, ascending, each once.
 std::vector<std::uint64_t> seeds_of(const std::vector<TestRecord>& tests);

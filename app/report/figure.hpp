@@ -18,35 +18,36 @@ enum class Colour { ink, blue, vermillion, green, purple, orange, sky };
 inline constexpr int kColourCount = 7;
 
 struct Series {
-  Text label;                    ///< entry in the legend, once per figure and label; empty: none
-  std::vector<double> x, y;      ///< same length; a point that is not finite is not drawn but counted
-  std::vector<double> y_error;   ///< one standard error each, may be empty or NaN
+  Text label;                   ///< entry in the legend, once per figure and label; empty: none
+  std::vector<double> x, y;     ///< same length; a point that is not finite is not drawn but counted
+  std::vector<double> y_error;  ///< one standard error each, may be empty or NaN
   Colour colour = Colour::ink;
   Marker marker = Marker::none;
-  bool open_marker = false;      ///< outline only
-  double marker_size = 3;        ///< half of its width [px]
+  bool open_marker = false;  ///< outline only
+  double marker_size = 3;    ///< half of its width [px]
   Line line = Line::none;
+  double line_width = 1.8;  ///< [px]
 };
 
 struct AxisStyle {
-  Text label;                        ///< quantity, symbol and unit
+  Text label;  ///< quantity, symbol and unit
   bool logarithmic = false;
-  std::optional<double> from, to;    ///< shown range; what is not given comes from the data
-  std::optional<double> include;     ///< a value that the range must contain, e.g. 0
+  std::optional<double> from, to;  ///< shown range; what is not given comes from the data
+  std::optional<double> include;   ///< a value that the range must contain, e.g. 0
 };
 
 struct Panel {
-  Text title;                 ///< may be empty
+  Text title;  ///< may be empty
   AxisStyle x, y;
   std::vector<Series> series;
-  bool zero_line = false;     ///< a thin line at y = 0
+  bool zero_line = false;  ///< a thin line at y = 0
 };
 
 struct Figure {
-  std::string id;             ///< letters, digits and '-'; unique in the page
-  std::string title;          ///< for the caption and for screen readers, one line
-  std::string description;    ///< what a reader sees, for screen readers
-  Text caption;               ///< below the figure
+  std::string id;                    ///< letters, digits and '-'; unique in the page
+  std::string title;                 ///< for the caption and for screen readers, one line
+  std::string description;           ///< what a reader sees, for screen readers
+  Text caption;                      ///< below the figure
   std::vector<std::string> sources;  ///< files that it was drawn from, relative to the report's directory
   std::vector<Panel> panels;
   int columns = 1;

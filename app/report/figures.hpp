@@ -23,12 +23,12 @@ Figure shear_law_figure(const ReportInput& input);
 /// Misfit of P*, s_par, F_par per calibration test of the coupled fit.
 Figure residual_figure(const ReportInput& input);
 
-/// P*, s_par, F_par against eps_dev of one prediction and the DEM runs of its path.
-Figure prediction_figure(const PredictionCase& prediction, std::size_t index);
+/// P*, s_par, F_par against eps_dev of one prediction and the DEM runs of its path, and their difference.
+Figure prediction_figure(const PredictionFolder& prediction, std::size_t index);
 
 /// E_kin/E_pot, |energy residual|, inertial number against nu on the isotropic branches.
 Figure preparation_quality_figure(const ReportInput& input);
-/// The same over the strain of the shear tests.
+/// The same over the course of the element tests.
 Figure shear_quality_figure(const ReportInput& input);
 
 }  // namespace grainlaw::app::report

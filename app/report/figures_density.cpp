@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "app/report/dem_series.hpp"
 #include "app/report/figures.hpp"
@@ -12,17 +14,24 @@ using Law = StateLaw<double>;
 
 constexpr int kRowsShown = 60;
 
-/// Curves of one quantity over density: ours and published, isotropic and steady.
+/// Curves of one quantity over density: ours and published, isotropic and steady. Ours only where all `groups` of
+/// parameters that it reads are identified.
 template <class Function>
-void add_state_curves(Panel& panel, const ReportInput& input, double from, double to, const Function& of) {
+void add_state_curves(Panel& panel, const ReportInput& input, double from, double to,
+                      const std::vector<const char*>& groups, const Function& of) {
   const LawParameters<double> published = published_parameters();
   const auto add = [&](const char* label, const Law& law, Colour colour, Line line) {
     panel.series.push_back(curve(notation(label), colour, line, from, to, [&](double nu) { return of(law, nu); }));
   };
+  const auto known = [&](const std::string& prefix) {
+    return std::all_of(groups.begin(), groups.end(),
+                       [&](const char* group) { return has_values(input.calibration, prefix + group); });
+  };
   add("ISO, published", published.isotropic, Colour::ink, Line::dashed);
   add("steady D2, published", published.steady, Colour::purple, Line::dashed);
-  add("ISO, fitted", input.calibration.parameters.isotropic, Colour::blue, Line::solid);
-  add("steady D2, fitted", input.calibration.parameters.steady, Colour::vermillion, Line::solid);
+  const LawParameters<double>& ours = input.calibration.parameters;
+  if (known("")) add("ISO, fitted", ours.isotropic, Colour::blue, Line::solid);
+  if (known("steady_")) add("steady D2, fitted", ours.steady, Colour::vermillion, Line::solid);
 }
 
 void add_isotropic_symbols(Panel& panel, const ReportInput& input, Quantity y) {
@@ -56,7 +65,9 @@ struct Range {
 /// From a little below jamming, where the laws begin, to the densest row.
 Range shown_range(const ReportInput& input) {
   const auto& c = input.calibration;
-  return {std::min(c.parameters.steady.pressure.nu_c, c.parameters.isotropic.pressure.nu_c), c.nu_max};
+  double from = c.parameters.isotropic.pressure.nu_c;
+  if (has_values(c, "steady_pressure")) from = std::min(from, c.parameters.steady.pressure.nu_c);
+  return {std::min(from, c.nu_max - 0.01), c.nu_max};
 }
 
 Panel density_panel(const char* label, const Range& range) {
@@ -76,8 +87,10 @@ Figure density_figure(const ReportInput& input) {
   figure.id = "density";
   figure.title = "Pressure, coordination and rattlers against volume fraction";
   figure.description =
-      "Three panels over volume fraction: dimensionless pressure and corrected coordination number rise, the fraction of "
-      "rattlers falls. Symbols are DEM data, solid lines the fitted equations 14, 11 and 12, dashed lines the published ones.";
+      "Three panels over volume fraction: dimensionless pressure and corrected coordination number rise, the fraction "
+      "of "
+      "rattlers falls. Symbols are DEM data, solid lines the fitted equations 14, 11 and 12, dashed lines the "
+      "published ones.";
   figure.caption = notation(
       "{P}* with Eq. 14, {C}* with Eq. 11, {φ}_{r} with Eq. 12. Every run shows about 60 of its rows. "
       "Dashed: Table 2 of the paper.");
@@ -89,19 +102,20 @@ Figure density_figure(const ReportInput& input) {
   pressure.y.include = 0;
   add_isotropic_symbols(pressure, input, &Observation::P_star);
   add_steady_symbols(pressure, input, &fit::ShearFit::P_star);
-  add_state_curves(pressure, input, range.from, range.to, [](const Law& law, double nu) { return law.P_star(nu); });
+  add_state_curves(pressure, input, range.from, range.to, {"pressure", "coordination", "rattlers"},
+                   [](const Law& law, double nu) { return law.P_star(nu); });
 
   Panel coordination = density_panel("coordination number {C}* [–]", range);
   add_isotropic_symbols(coordination, input, &Observation::C_star);
   add_steady_symbols(coordination, input, &fit::ShearFit::C_star);
-  add_state_curves(coordination, input, range.from, range.to,
+  add_state_curves(coordination, input, range.from, range.to, {"coordination"},
                    [](const Law& law, double nu) { return law.coordination.C_star(nu); });
 
   Panel rattlers = density_panel("rattler fraction {φ}_{r} [–]", range);
   rattlers.y.include = 0;
   add_isotropic_symbols(rattlers, input, &Observation::rattler_fraction);
   add_steady_symbols(rattlers, input, &fit::ShearFit::rattler_fraction);
-  add_state_curves(rattlers, input, range.from, range.to,
+  add_state_curves(rattlers, input, range.from, range.to, {"rattlers", "coordination"},
                    [](const Law& law, double nu) { return law.rattlers.fraction(nu, law.coordination.nu_c); });
 
   figure.panels = {pressure, coordination, rattlers};
@@ -117,8 +131,10 @@ Figure scaled_density_figure(const ReportInput& input) {
   figure.id = "scaled";
   figure.title = "Scaled pressure, overlap and fabric trace on isotropic unloading";
   figure.description =
-      "Three panels over volume fraction, all rising: pressure divided by density and coordination, mean overlap of contacts, "
-      "trace of the fabric tensor. Symbols are DEM data, solid lines the fitted equations, dashed lines the published ones.";
+      "Three panels over volume fraction, all rising: pressure divided by density and coordination, mean overlap of "
+      "contacts, "
+      "trace of the fabric tensor. Symbols are DEM data, solid lines the fitted equations, dashed lines the published "
+      "ones.";
   figure.caption = notation(
       "Scaled pressure {P}* {ν}_{c}/({ν}{C}) with Eq. 15, mean overlap with Eq. 13 ({D} ln({ν}/{ν}_{c})), "
       "{F}_{v} with {g}_{3}{ν}{C}.");
@@ -126,9 +142,10 @@ Figure scaled_density_figure(const ReportInput& input) {
   figure.columns = 3;
   figure.panel_height = 230;
 
-  const auto add_curves = [&](Panel& panel, const auto& of) {
+  const auto add_curves = [&](Panel& panel, bool known, const auto& of) {
     panel.series.push_back(curve(notation("published"), Colour::ink, Line::dashed, range.from, range.to,
                                  [&](double nu) { return of(published, nu); }));
+    if (!known) return;
     panel.series.push_back(curve(notation("fitted"), Colour::blue, Line::solid, range.from, range.to,
                                  [&](double nu) { return of(ours, nu); }));
   };
@@ -143,18 +160,20 @@ Figure scaled_density_figure(const ReportInput& input) {
     for (std::size_t i = 0; i < series.y.size(); ++i) series.y[i] *= ours.isotropic.pressure.nu_c / (C.x[i] * C.y[i]);
     scaled.series.push_back(series);
   }
-  add_curves(scaled, [](const auto& p, double nu) { return p.isotropic.pressure.scaled(nu); });
+  add_curves(scaled, has_values(input.calibration, "pressure"),
+             [](const auto& p, double nu) { return p.isotropic.pressure.scaled(nu); });
 
   Panel overlap = density_panel("mean overlap ⟨δ⟩/⟨{r}⟩ [–]", range);
   overlap.y.include = 0;
   add_isotropic_symbols(overlap, input, &Observation::mean_overlap);
-  add_curves(overlap, [](const auto& p, double nu) {
+  add_curves(overlap, has_values(input.calibration, "overlap"), [](const auto& p, double nu) {
     return nu > p.isotropic.pressure.nu_c ? p.overlap_D * std::log(nu / p.isotropic.pressure.nu_c) : 0.0;
   });
 
   Panel trace = density_panel("fabric trace {F}_{v} [–]", range);
   add_isotropic_symbols(trace, input, &Observation::F_v);
-  add_curves(trace, [](const auto& p, double nu) { return p.fabric_g3 * nu * p.isotropic.C(nu); });
+  add_curves(trace, has_values(input.calibration, "fabric"),
+             [](const auto& p, double nu) { return p.fabric_g3 * nu * p.isotropic.C(nu); });
 
   for (Panel* panel : {&overlap, &trace}) {
     for (Series& series : panel->series) {

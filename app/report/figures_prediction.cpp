@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "app/report/dem_series.hpp"
 #include "app/report/figures.hpp"
@@ -13,79 +14,161 @@ using predict::PredictedRow;
 
 struct Predicted {
   const char* label;
+  const char* difference;
   Quantity measured;
   double (*of)(const PredictedRow&);
 };
 
 constexpr std::array<Predicted, 3> kQuantities{
-    {{"pressure {P}* [–]", &Observation::P_star, [](const PredictedRow& row) { return row.state.P; }},
-     {"stress ratio {s}_{∥} [–]", &Observation::s_par, [](const PredictedRow& row) { return row.s_par; }},
-     {"fabric {F}_{∥} [–]", &Observation::F_par, [](const PredictedRow& row) { return row.F_par; }}}};
+    {{"pressure {P}* [–]", "law − DEM: {P}* [–]", &Observation::P_star,
+      [](const PredictedRow& row) { return row.state.P; }},
+     {"stress ratio {s}_{∥} [–]", "law − DEM: {s}_{∥} [–]", &Observation::s_par,
+      [](const PredictedRow& row) { return row.s_par; }},
+     {"fabric {F}_{∥} [–]", "law − DEM: {F}_{∥} [–]", &Observation::F_par,
+      [](const PredictedRow& row) { return row.F_par; }}}};
 
-/// Paths that return (ISO after shear, reversals) need the length travelled, simple ones the strain of the figures.
-bool strain_grows(const PredictionCase& prediction) {
-  for (const TestRecord& test : prediction.dem) {
-    for (std::size_t i = 1; i < test.rows.size(); ++i) {
-      if (test.rows[i].eps_dev < test.rows[i - 1].eps_dev) return false;
-    }
-  }
-  for (const PredictedCurve& drawn : prediction.curves) {
-    for (std::size_t i = 1; i < drawn.rows.size(); ++i) {
-      if (drawn.rows[i].eps_dev < drawn.rows[i - 1].eps_dev) return false;
-    }
-  }
-  return true;
+template <class Row>
+bool strain_grows(const std::vector<Row>& rows) {
+  const auto less = [](const Row& a, const Row& b) { return a.eps_dev < b.eps_dev; };
+  return std::is_sorted(rows.begin(), rows.end(), less);
 }
 
-Series predicted_line(const PredictedCurve& drawn, const Predicted& quantity, bool by_strain) {
+/// What the figure is drawn over: deviatoric strain, or the length travelled when the path turns.
+struct Abscissa {
+  bool by_strain = true;
+
+  double of(const Observation& row) const { return by_strain ? row.eps_dev : row.shear_path; }
+  double of(const PredictedRow& row) const { return by_strain ? row.eps_dev : row.shear_path; }
+};
+
+Abscissa abscissa_of(const PredictionFolder& prediction, const std::vector<TestRecord>& dem) {
+  const bool grows =
+      std::all_of(dem.begin(), dem.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
+      std::all_of(prediction.curves.begin(), prediction.curves.end(),
+                  [](const PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
+  return {grows};
+}
+
+/// Started from the law, a curve is the same for every seed and shown once; from measured values there is one for each.
+std::vector<const PredictedCurve*> shown_curves(const PredictionFolder& prediction) {
+  std::vector<const PredictedCurve*> shown;
+  for (const PredictedCurve& drawn : prediction.curves) {
+    const bool again = std::any_of(shown.begin(), shown.end(), [&](const PredictedCurve* other) {
+      return drawn.initial == Initial::law && other->initial == Initial::law && other->model == drawn.model;
+    });
+    if (!again) shown.push_back(&drawn);
+  }
+  return shown;
+}
+
+Series law_series(const PredictedCurve& drawn) {
+  const bool reduced = drawn.model == predict::Model::reduced, measured = drawn.initial == Initial::measured;
   Series series;
-  const bool reduced = drawn.model == "reduced", measured = drawn.initial == "measured";
-  series.label = plain(drawn.model + (measured ? ", from the measured start" : ", from the law's start"));
+  series.label =
+      plain(predict::to_string(drawn.model) + (measured ? ", from measured start" : ", from the law's start"));
   series.colour = reduced ? Colour::green : Colour::vermillion;
   series.line = measured ? Line::dotted : Line::solid;
-  for (const PredictedRow& row : drawn.rows) {
-    series.x.push_back(by_strain ? row.eps_dev : row.shear_path);
+  return series;
+}
+
+Series predicted_line(const PredictedCurve& drawn, const Predicted& quantity, const Abscissa& abscissa) {
+  Series series = law_series(drawn);
+  for (const PredictedRow& row : drawn.prediction.rows) {
+    series.x.push_back(abscissa.of(row));
     series.y.push_back(quantity.of(row));
   }
   return series;
 }
 
+/// Row by row: the curve was computed at the rows of `test`.
+Series difference_line(const PredictedCurve& drawn, const TestRecord& test, const Predicted& quantity,
+                       const Abscissa& abscissa) {
+  Series series = law_series(drawn);
+  series.line_width = 1;
+  const std::size_t rows = std::min(drawn.prediction.rows.size(), test.rows.size());
+  for (std::size_t i = 0; i < rows; ++i) {
+    series.x.push_back(abscissa.of(test.rows[i]));
+    series.y.push_back(quantity.of(drawn.prediction.rows[i]) - test.rows[i].*quantity.measured);
+  }
+  return series;
+}
+
+AxisStyle strain_axis(const Abscissa& abscissa) {
+  AxisStyle style;
+  style.label =
+      notation(abscissa.by_strain ? "deviatoric strain {ε}_{dev} [–]" : "strain path length ∫|d{ε}_{dev}| [–]");
+  style.include = 0;
+  return style;
+}
+
+Panel value_panel(const PredictionFolder& prediction, const std::vector<TestRecord>& dem, const Predicted& quantity,
+                  const Abscissa& abscissa) {
+  Panel panel;
+  panel.x = strain_axis(abscissa);
+  panel.y.label = notation(quantity.label);
+  panel.y.include = 0;
+  const auto seeds = seeds_of(dem);
+  for (const TestRecord& test : dem) {
+    const std::size_t seed = index_of(seeds, test.packing.seed);
+    panel.series.push_back(dem_symbols(test, abscissa.by_strain ? &Observation::eps_dev : &Observation::shear_path,
+                                       quantity.measured, 60, plain("DEM seed " + std::to_string(test.packing.seed)),
+                                       seed % 2 == 0 ? Colour::blue : Colour::sky, marker_of(seed)));
+  }
+  for (const PredictedCurve* drawn : shown_curves(prediction)) {
+    panel.series.push_back(predicted_line(*drawn, quantity, abscissa));
+  }
+  return panel;
+}
+
+Panel difference_panel(const PredictionFolder& prediction, const std::vector<TestRecord>& dem,
+                       const Predicted& quantity, const Abscissa& abscissa) {
+  Panel panel;
+  panel.x = strain_axis(abscissa);
+  panel.y.label = notation(quantity.difference);
+  panel.y.include = 0;
+  panel.zero_line = true;
+  for (const PredictedCurve& drawn : prediction.curves) {
+    if (!drawn.seed) continue;
+    for (const TestRecord& test : dem) {
+      if (test.packing.seed == *drawn.seed) panel.series.push_back(difference_line(drawn, test, quantity, abscissa));
+    }
+  }
+  return panel;
+}
+
+std::string in_folder(const PredictionFolder& prediction, const std::string& file) {
+  return "predictions/" + prediction.name + "/" + file;
+}
+
 }  // namespace
 
-Figure prediction_figure(const PredictionCase& prediction, std::size_t index) {
+Figure prediction_figure(const PredictionFolder& prediction, std::size_t index) {
+  const std::vector<TestRecord> dem = dem_records(prediction);
   Figure figure;
   figure.id = fmt::format("prediction-{}", index + 1);
-  figure.title = fmt::format("{}: {} from ν = {:.4g}, {} branch", prediction.name, kind_of(prediction.path),
+  figure.title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
                              prediction.path.nu, to_string(prediction.path.branch));
   figure.description =
-      "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs on packings "
-      "that the calibration never saw, lines the predictions of the law.";
-  figure.caption = prediction.dem.empty()
-                       ? plain("No DEM run of this path; grainlaw predict with --dem makes them.")
-                       : plain("DEM on packings that the calibration never saw (" + seed_count(prediction.dem) + ").");
-  for (const PredictedCurve& drawn : prediction.curves) figure.sources.push_back(drawn.file);
-  figure.sources.insert(figure.sources.end(), prediction.dem_files.begin(), prediction.dem_files.end());
+      "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs on "
+      "packings "
+      "that the calibration never saw, lines the predictions of the law. Below them the differences.";
+  figure.caption =
+      dem.empty() ? plain("No DEM run of this path; grainlaw predict with --dem makes them.")
+                  : plain("DEM on packings that the calibration never saw (" + seed_count(dem) +
+                          "). Below: the law minus DEM, row by row, a thin line for each run; its ripple is that of "
+                          "the packing.");
+  for (const PredictedCurve& drawn : prediction.curves) figure.sources.push_back(in_folder(prediction, drawn.file));
+  if (!dem.empty()) figure.sources.push_back(in_folder(prediction, "dem/"));
   figure.columns = 3;
-  figure.panel_height = 250;
+  figure.panel_height = dem.empty() ? 250 : 210;
 
-  const bool by_strain = strain_grows(prediction);
-  const auto seeds = seeds_of(prediction.dem);
-  for (const Predicted& quantity : kQuantities) {
-    Panel panel;
-    panel.x.label = notation(by_strain ? "deviatoric strain {ε}_{dev} [–]" : "strain path length ∫|d{ε}_{dev}| [–]");
-    panel.x.include = 0;
-    panel.y.label = notation(quantity.label);
-    panel.y.include = 0;
-    for (const TestRecord& test : prediction.dem) {
-      const std::size_t seed = index_of(seeds, test.packing.seed);
-      panel.series.push_back(dem_symbols(test, by_strain ? &Observation::eps_dev : &Observation::shear_path,
-                                         quantity.measured, 60, plain("DEM seed " + std::to_string(test.packing.seed)),
-                                         seed % 2 == 0 ? Colour::blue : Colour::sky, marker_of(seed)));
+  const Abscissa abscissa = abscissa_of(prediction, dem);
+  for (const Predicted& quantity : kQuantities)
+    figure.panels.push_back(value_panel(prediction, dem, quantity, abscissa));
+  if (!dem.empty()) {
+    for (const Predicted& quantity : kQuantities) {
+      figure.panels.push_back(difference_panel(prediction, dem, quantity, abscissa));
     }
-    for (const PredictedCurve& drawn : prediction.curves) {
-      panel.series.push_back(predicted_line(drawn, quantity, by_strain));
-    }
-    figure.panels.push_back(panel);
   }
   return figure;
 }

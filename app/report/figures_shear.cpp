@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
 
 #include "app/report/dem_series.hpp"
 #include "app/report/figures.hpp"
@@ -16,6 +19,7 @@ struct Saturation {
   const char* title;
   const char* symbol;
   const char* equation;
+  std::array<const char*, 2> groups;  ///< of parameters that `law` reads
   Quantity measured;
   fit::Estimate fit::ShearFit::*limit;
   fit::Estimate fit::ShearFit::*rate;
@@ -49,7 +53,8 @@ std::vector<PanelKey> panel_keys(const std::vector<const TestRecord*>& tests) {
     if (!known) keys.push_back({test->path.segments.front().mode, test->path.branch, test->path.nu});
   }
   std::sort(keys.begin(), keys.end(), [](const PanelKey& a, const PanelKey& b) {
-    return std::tuple(a.mode, a.branch == Branch::loading, a.nu) < std::tuple(b.mode, b.branch == Branch::loading, b.nu);
+    return std::tuple(a.mode, a.branch == Branch::loading, a.nu) <
+           std::tuple(b.mode, b.branch == Branch::loading, b.nu);
   });
   return keys;
 }
@@ -59,7 +64,7 @@ Text panel_title(const PanelKey& key, const std::vector<PanelKey>& keys) {
       std::any_of(keys.begin(), keys.end(), [&](const PanelKey& other) { return other.mode != key.mode; });
   std::string prefix = several_modes ? to_string(key.mode) + ", " : "";
   if (key.branch == Branch::loading) prefix += "loading branch, ";
-  return plain(prefix) + notation(fmt::format("{{ν}} = {:.4g}", key.nu));
+  return plain(prefix) + notation(fmt::format("{{ν}} = {:.3f}", key.nu));
 }
 
 double largest_strain(const TestRecord& test) {
@@ -75,8 +80,13 @@ void add_run(Panel& panel, const TestRecord& test, const ReportInput& input, con
   panel.series.push_back(dem_symbols(test, &Observation::eps_dev, what.measured, 70, plain("DEM seed " + number),
                                      colour_of(seed), marker_of(seed)));
   const auto& fits = input.calibration.shear;
-  const auto found = std::find_if(fits.begin(), fits.end(), [&](const fit::ShearFit& f) { return f.test == test.name; });
+  const auto found =
+      std::find_if(fits.begin(), fits.end(), [&](const fit::ShearFit& f) { return f.test == test.name; });
   if (found == fits.end()) return;
+  if (((*found).*what.limit).status == fit::Status::not_identified ||
+      ((*found).*what.rate).status == fit::Status::not_identified) {
+    return;
+  }
   const double limit = ((*found).*what.limit).value, rate = ((*found).*what.rate).value, start = (*found).*what.start;
   panel.series.push_back(curve(plain("fit of seed " + number), colour_of(seed), Line::solid, 0, largest_strain(test),
                                [=](double e) { return saturating(limit, start, rate, e); }));
@@ -87,12 +97,14 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
   figure.id = what.id;
   figure.title = what.title;
   figure.description = fmt::format(
-      "One panel per density. Over deviatoric strain the quantity rises from about zero and saturates; the plateau is lower "
+      "One panel per density. Over deviatoric strain the quantity rises from about zero and saturates; the plateau is "
+      "lower "
       "at higher density. Symbols are DEM runs, solid lines the fits of Eq. {}, dashed lines the published law.",
       what.equation);
   figure.caption = notation(fmt::format(
       "Signed along the direction of shear. Solid: Eq. {} fitted to each run; dotted: the same equation with the "
-      "parameters after the coupled fit, started from zero; dashed: with Table 3 of the paper.", what.equation));
+      "parameters after the coupled fit, started from zero; dashed: with Table 3 of the paper.",
+      what.equation));
   figure.sources = {"dataset/", "calibration.json", "parameters.json"};
   figure.shared_axes = true;
   figure.panel_height = 190;
@@ -115,8 +127,10 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
       add_run(panel, *test, input, what, index_of(seeds, test->packing.seed));
       end = std::max(end, largest_strain(*test));
     }
-    panel.series.push_back(curve(plain("law, final parameters"), Colour::ink, Line::dotted, 0, end,
-                                 [&](double e) { return what.law(input.calibration.parameters, key.nu, e); }));
+    if (has_values(input.calibration, what.groups[0]) && has_values(input.calibration, what.groups[1])) {
+      panel.series.push_back(curve(plain("law, final parameters"), Colour::ink, Line::dotted, 0, end,
+                                   [&](double e) { return what.law(input.calibration.parameters, key.nu, e); }));
+    }
     panel.series.push_back(curve(plain("published"), Colour::ink, Line::dashed, 0, end,
                                  [&](double e) { return what.law(published, key.nu, e); }));
     figure.panels.push_back(panel);
@@ -128,15 +142,29 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
 
 Figure stress_ratio_figure(const ReportInput& input) {
   return saturation_figure(
-      input, {"stress-ratio", "Stress ratio in shear at constant volume", "stress ratio {s}_{∥} [–]", "17",
-              &Observation::s_par, &fit::ShearFit::s_max, &fit::ShearFit::beta_s, &fit::ShearFit::s_0,
+      input, {"stress-ratio",
+              "Stress ratio in shear at constant volume",
+              "stress ratio {s}_{∥} [–]",
+              "17",
+              {"stress_ratio_max", "stress_rate"},
+              &Observation::s_par,
+              &fit::ShearFit::s_max,
+              &fit::ShearFit::beta_s,
+              &fit::ShearFit::s_0,
               [](const LawParameters<double>& p, double nu, double e) { return reduced_stress_ratio(p, nu, 0.0, e); }});
 }
 
 Figure fabric_figure(const ReportInput& input) {
   return saturation_figure(
-      input, {"fabric", "Deviatoric fabric in shear at constant volume", "fabric {F}_{∥} [–]", "18", &Observation::F_par,
-              &fit::ShearFit::F_max, &fit::ShearFit::beta_F, &fit::ShearFit::F_0,
+      input, {"fabric",
+              "Deviatoric fabric in shear at constant volume",
+              "fabric {F}_{∥} [–]",
+              "18",
+              {"fabric_max", "fabric_rate"},
+              &Observation::F_par,
+              &fit::ShearFit::F_max,
+              &fit::ShearFit::beta_F,
+              &fit::ShearFit::F_0,
               [](const LawParameters<double>& p, double nu, double e) { return reduced_fabric(p, nu, 0.0, e); }});
 }
 

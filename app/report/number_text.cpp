@@ -23,6 +23,13 @@ std::string significant(double value, int digits) {
   return with_minus(fmt::format("{:.{}g}", value, digits));
 }
 
+std::string significant_padded(double value, int digits) {
+  if (!std::isfinite(value) || value == 0) return significant(value, digits);
+  const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value))));
+  if (exponent < -5 || exponent > 8) return with_minus(fmt::format("{:.{}e}", value, digits - 1));
+  return fixed(value, std::max(0, digits - 1 - exponent));
+}
+
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return kNoNumber;
   std::string text = fmt::format("{:.{}f}", value, decimals);
@@ -42,6 +49,7 @@ std::string with_error(double value, double standard_error) {
 std::string percent_difference(double ours, double reference) {
   const double percent = 100 * (ours - reference) / std::abs(reference);
   if (!std::isfinite(percent)) return kNoNumber;
+  if (percent == 0) return "0 %";
   const int decimals = std::abs(percent) < 10 ? 1 : 0;
   return with_minus(fmt::format("{:+.{}f} %", percent, decimals));
 }

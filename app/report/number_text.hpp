@@ -10,6 +10,8 @@ inline constexpr const char* kNoNumber = "–";
 
 /// `digits` significant digits, e.g. 0.04172, 1.23e-7, 1,200,000 as 1.2e+06; kNoNumber when not finite.
 std::string significant(double value, int digits = 4);
+/// Likewise with trailing zeros: 9.280.
+std::string significant_padded(double value, int digits = 4);
 
 /// Fixed number of decimals; kNoNumber when not finite.
 std::string fixed(double value, int decimals);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
@@ -17,20 +18,20 @@ constexpr const char* kTemplate = R"(<!DOCTYPE html>
 <meta charset="utf-8"/>
 <meta name="viewport" content="width=device-width, initial-scale=1"/>
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'"/>
-<title>{{title}}</title>
+<title>{{{title}}}</title>
 <style>
 {{{style}}}</style>
 </head>
 <body>
 <header>
-<h1>{{title}}</h1>
+<h1>{{{title}}}</h1>
 {{#lead}}
 {{{html}}}
 {{/lead}}
 <nav aria-label="Contents">
 <ol>
 {{#sections}}
-<li><a href="#{{id}}">{{heading}}</a></li>
+<li><a href="#{{id}}">{{{heading}}}</a></li>
 {{/sections}}
 </ol>
 </nav>
@@ -38,7 +39,7 @@ constexpr const char* kTemplate = R"(<!DOCTYPE html>
 <main>
 {{#sections}}
 <section id="{{id}}" aria-labelledby="{{id}}-heading">
-<h2 id="{{id}}-heading">{{heading}}</h2>
+<h2 id="{{id}}-heading">{{{heading}}}</h2>
 {{#blocks}}
 {{{html}}}
 {{/blocks}}
@@ -66,15 +67,31 @@ std::string file_list(const std::vector<std::string>& files) {
   return html;
 }
 
+const char* cell_class(TableColumn::Content content) {
+  switch (content) {
+    case TableColumn::Content::words:
+      break;
+    case TableColumn::Content::symbol:
+      return " class=\"symbol\"";
+    case TableColumn::Content::number:
+      return " class=\"number\"";
+  }
+  return "";
+}
+
 /// JSON has no NaN: what is undefined becomes null.
 nlohmann::json number_list(const std::vector<double>& values) {
   auto list = nlohmann::json::array();
   for (const double value : values) {
-    if (std::isfinite(value)) {
-      list.push_back(value);
-    } else {
+    if (!std::isfinite(value)) {
       list.push_back(nullptr);
+      continue;
     }
+    // Six digits are more than a figure shows; the files have them all.
+    const std::string digits = fmt::format("{:.6g}", value);
+    double rounded = value;
+    std::from_chars(digits.data(), digits.data() + digits.size(), rounded);
+    list.push_back(rounded);
   }
   return list;
 }
@@ -98,10 +115,17 @@ std::string figure_data(const Figure& figure) {
   std::string safe;
   for (const char c : document.dump(-1, ' ', /*ensure_ascii=*/true)) {
     switch (c) {
-      case '<': safe += "\\u003c"; break;
-      case '>': safe += "\\u003e"; break;
-      case '&': safe += "\\u0026"; break;
-      default: safe += c;
+      case '<':
+        safe += "\\u003c";
+        break;
+      case '>':
+        safe += "\\u003e";
+        break;
+      case '&':
+        safe += "\\u0026";
+        break;
+      default:
+        safe += c;
     }
   }
   return safe;
@@ -113,20 +137,18 @@ std::string paragraph_html(const Text& text) { return "<p>" + to_html(text) + "<
 
 std::string table_html(const Table& table) {
   std::string html = "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" +
-                     escape_markup(to_plain(plain(table.caption))) + "\">\n<table>\n<caption>" +
-                     to_html(plain(table.caption));
+                     to_html(plain(table.caption)) + "\">\n<table>\n<caption>" + to_html(plain(table.caption));
   if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
   html += "</caption>\n<thead><tr>";
-  for (const Column& column : table.columns) {
-    html += fmt::format("<th scope=\"col\"{}>{}</th>", column.number ? " class=\"number\"" : "", to_html(column.heading));
+  for (const TableColumn& column : table.columns) {
+    html += fmt::format("<th scope=\"col\"{}>{}</th>", cell_class(column.content), to_html(column.heading));
   }
   html += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     html += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const bool number = i < table.columns.size() && table.columns[i].number;
+    for (std::size_t i = 0; i < row.size() && i < table.columns.size(); ++i) {
       const char* const tag = i == 0 ? "th" : "td";
-      html += fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "", number ? " class=\"number\"" : "",
+      html += fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "", cell_class(table.columns[i].content),
                           to_html(row[i]), tag);
     }
     html += "</tr>\n";
@@ -136,8 +158,8 @@ std::string table_html(const Table& table) {
 
 std::string figure_html(const Figure& figure) {
   const RenderedFigure rendered = render_svg(figure);
-  std::string html = fmt::format("<figure id=\"{}\">\n<div class=\"scroll\">{}</div>\n<figcaption><b>{}.</b> {}", figure.id,
-                                 rendered.svg, to_html(plain(figure.title)), to_html(figure.caption));
+  std::string html = fmt::format("<figure id=\"{}\">\n<div class=\"scroll\">{}</div>\n<figcaption><b>{}.</b> {}",
+                                 figure.id, rendered.svg, to_html(plain(figure.title)), to_html(figure.caption));
   if (rendered.undefined_points > 0) {
     html += fmt::format(" <span class=\"source\">{} undefined points are not drawn.</span>", rendered.undefined_points);
   }
@@ -155,12 +177,12 @@ std::string page_html(const Page& page) {
   for (const Section& section : page.sections) {
     data entry;
     entry.set("id", section.id);
-    entry.set("heading", section.heading);
+    entry.set("heading", to_html(plain(section.heading)));
     entry.set("blocks", html_list(section.blocks));
     sections << entry;
   }
   data root;
-  root.set("title", page.title);
+  root.set("title", to_html(plain(page.title)));
   root.set("style", page_style());
   root.set("lead", html_list(page.lead));
   root.set("sections", sections);

@@ -8,20 +8,21 @@
 
 namespace grainlaw::app::report {
 
-struct Column {
+struct TableColumn {
+  enum class Content { words, symbol, number };  ///< may wrap, may not, aligned to the right
   Text heading;
-  bool number = true;   ///< aligned to the right
+  Content content = Content::number;
 };
 
 struct Table {
-  std::string caption;                  ///< one line, above the table
-  std::vector<Column> columns;
+  std::string caption;  ///< one line, above the table
+  std::vector<TableColumn> columns;
   std::vector<std::vector<Text>> rows;  ///< as many cells as columns
   std::string source;                   ///< file, may be empty
 };
 
 struct Section {
-  std::string id;       ///< letters, digits and '-'
+  std::string id;  ///< letters, digits and '-'
   std::string heading;
   std::vector<std::string> blocks;  ///< HTML made by the functions below
 };

@@ -18,7 +18,7 @@ const char* page_style() {
 }
 * { box-sizing: border-box; }
 html { background: var(--ground); color: var(--text); font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; }
-body { max-width: 62rem; margin: 0 auto; padding: 1.5rem 1rem 4rem; }
+body { max-width: 66rem; margin: 0 auto; padding: 1.5rem 1rem 4rem; }
 h1 { font-size: 1.7rem; line-height: 1.25; margin: 0 0 .5rem; }
 h2 { font-size: 1.25rem; margin: 2.5rem 0 .75rem; padding-top: .75rem; border-top: 1px solid var(--rule); }
 p { max-width: 46rem; }
@@ -42,11 +42,12 @@ svg .axis { fill: none; stroke: var(--quiet); stroke-width: .8; }
 table { border-collapse: collapse; font-size: .9rem; margin: 1rem 0 1.5rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: .4rem; }
 caption .source { font-weight: 400; }
-th, td { padding: .2rem .7rem; text-align: left; vertical-align: baseline; font-weight: 400; }
+th, td { padding: .2rem .5rem; text-align: left; vertical-align: baseline; font-weight: 400; }
 thead th { font-weight: 600; border-bottom: 1.5px solid var(--quiet); }
 tbody tr { border-bottom: 1px solid var(--rule); }
 tbody tr:nth-child(even) { background: var(--band); }
 .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.symbol { white-space: nowrap; }
 sub, sup { line-height: 0; font-size: 75%; }
 @media print {
   :root {

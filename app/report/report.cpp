@@ -11,7 +11,7 @@ void write_report(const std::filesystem::path& dir, const std::filesystem::path&
 }
 
 std::string summary_table(const std::filesystem::path& dir) {
-  return report::parameter_summary(report::read_report_input(dir).calibration);
+  return report::parameter_summary(report::read_fitted_parameters(dir));
 }
 
 }  // namespace grainlaw::app

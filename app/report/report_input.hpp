@@ -1,65 +1,44 @@
 #pragma once
 // Everything that the report is drawn from, as read from the files of a calibration's folder. No numbers are made here.
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "app/files/prediction_files.hpp"
 #include "fit/calibrate.hpp"
 #include "model/test_record.hpp"
-#include "predict/compare.hpp"
 
 namespace grainlaw::app::report {
 
-/// A line "what: value" of the provenance table.
+/// A line "what: value" of the provenance table, and the file that says so.
 struct Fact {
-  std::string what, value;
-};
-
-/// One test of the data set and what its run cost.
-struct RunCost {
-  std::string name;
-  std::uint64_t steps = 0;   ///< time steps
-  double time_step = 0;      ///< dt [s]
-  double seconds = 0;        ///< wall time [s]
-};
-
-/// The law along the path, from one file.
-struct PredictedCurve {
-  std::string model;     ///< "reduced" or "evolution"
-  std::string initial;   ///< "law" or "measured"
-  std::string file;      ///< relative to the report's folder
-  std::vector<predict::PredictedRow> rows;
-  bool unjammed = false;
-};
-
-/// A comparison of one curve with one DEM run, or their mean.
-struct ComparisonEntry {
-  std::string model, initial;
-  std::string test;      ///< name of the DEM series, or "mean"
-  predict::QuantityComparison values;
-};
-
-struct PredictionCase {
-  std::string name;      ///< folder below predictions/
-  Path path;
-  std::vector<PredictedCurve> curves;
-  std::vector<TestRecord> dem;          ///< empty when the prediction was made without --dem
-  std::vector<std::string> dem_files;   ///< relative to the report's folder
-  std::vector<ComparisonEntry> comparisons;
-  std::vector<std::string> warnings;
+  std::string what, value, file;
 };
 
 struct ReportInput {
-  std::vector<TestRecord> tests;        ///< data set, calibration and validation
+  std::vector<TestRecord> tests;  ///< data set, calibration and validation
+  std::vector<RunCost> costs;     ///< of the tests, in their order
   fit::Calibration calibration;
-  std::vector<PredictionCase> predictions;
+  std::vector<PredictionFolder> predictions;  ///< by name
   std::vector<Fact> provenance;
-  std::vector<RunCost> costs;
+  std::vector<std::string> warnings;  ///< files that do not belong together, warnings of runs
 };
 
-/// Reads `folder`. A missing file is an Error that names the command which makes it.
-ReportInput read_report_input(const std::filesystem::path& folder);
+/// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it.
+ReportInput read_report_input(const std::filesystem::path& dir);
+
+/// parameters.json alone, as far as the table of parameters goes. Throws likewise.
+fit::Calibration read_fitted_parameters(const std::filesystem::path& dir);
+
+/// True when every parameter `group` or `group.*` of parameter_table() has a value. Curves of others are not drawn.
+bool has_values(const fit::Calibration& calibration, std::string_view group);
+
+/// The DEM runs of a prediction; empty when it was made without --dem.
+std::vector<TestRecord> dem_records(const PredictionFolder& prediction);
+
+/// `document` as lines "outer.inner: value", arrays on one line, null left out.
+void add_facts(const Json& document, const std::string& prefix, const std::string& file, std::vector<Fact>& facts);
 
 }  // namespace grainlaw::app::report

@@ -17,19 +17,25 @@ std::string folded(const std::string& summary, const std::string& html) {
   return "<details>\n<summary>" + to_html(plain(summary)) + "</summary>\n" + html + "\n</details>";
 }
 
+std::string warning_html(const std::string& text) { return "<p class=\"warning\">" + to_html(plain(text)) + "</p>"; }
+
 std::vector<std::string> lead(const ReportInput& input) {
   const auto& calibration = input.calibration;
   const auto count = [&](Role role) {
-    return std::count_if(input.tests.begin(), input.tests.end(), [&](const TestRecord& test) { return test.role == role; });
+    return std::count_if(input.tests.begin(), input.tests.end(),
+                         [&](const TestRecord& test) { return test.role == role; });
   };
   std::string text = fmt::format(
       "Frictionless spheres in a periodic cell were compressed and sheared ({} calibration tests, {}); an incremental "
-      "constitutive law was fitted to what they did; its predictions are set beside runs that the fit never saw. The form of "
+      "constitutive law was fitted to what they did; its predictions are set beside runs that the fit never saw. The "
+      "form of "
       "the law and the published numbers are those of Imole, Kumar, Magnanimo and Luding, KONA 30 (2013).",
       count(Role::calibration), seed_count(input.tests));
   std::string reading = fmt::format(
-      "In every figure symbols (or thin lines, where said) are DEM data, solid and dotted lines the law, dashed lines the "
-      "published law. Stress is positive in compression, strain in tension; a star means multiplied by 2⟨r⟩/k. Calibrated "
+      "In every figure symbols (or thin lines, where said) are DEM data, solid and dotted lines the law, dashed lines "
+      "the "
+      "published law. Stress is positive in compression, strain in tension; a star means multiplied by 2⟨r⟩/k. "
+      "Calibrated "
       "range: ν = {:.4g} to {:.4g}, deviatoric strain up to {:.3g}.",
       calibration.nu_min, calibration.nu_max, calibration.eps_dev_max);
   std::vector<std::string> blocks{paragraph_html(plain(text)), paragraph_html(plain(reading))};
@@ -38,8 +44,9 @@ std::vector<std::string> lead(const ReportInput& input) {
     for (const fit::Stage& stage : calibration.stages) {
       if (!stage.converged) stages += (stages.empty() ? "" : ", ") + stage.name;
     }
-    blocks.push_back("<p class=\"warning\">Not converged: " + to_html(plain(stages)) + ". See the stages of the fit below.</p>");
+    blocks.push_back(warning_html("Not converged: " + stages + ". See the stages of the fit below."));
   }
+  for (const std::string& warning : input.warnings) blocks.push_back(warning_html(warning));
   return blocks;
 }
 
@@ -58,23 +65,29 @@ std::string dilatancy_gap(const ReportInput& input) {
   }
   if (worst == nullptr) return "No constant-volume test entered the coupled fit.";
   return fmt::format(
-      "The known gap of Eq. 16: at constant volume the pressure of the packing changes, most of all near jamming, and the law "
+      "The known gap of Eq. 16: at constant volume the pressure of the packing changes, most of all near jamming, and "
+      "the law "
       "has no dilatancy to follow it. The largest bias of P* is {} % of the largest DEM value, in {}.",
       fixed(100 * worst->bias / worst->max_abs_data, 1), worst->test);
 }
 
 Section predictions(const ReportInput& input) {
   Section section{"predictions", "Predictions against runs that the fit never saw", {}};
-  if (input.predictions.empty()) {
-    section.blocks.push_back(paragraph_html(plain(
-        "None yet: grainlaw predict PARAMETERS.json PATH.json -o DIR/predictions/NAME --dem makes them.")));
-  }
+  section.blocks.push_back(table_html(prediction_summary(input.predictions)));
   for (std::size_t i = 0; i < input.predictions.size(); ++i) {
-    const PredictionCase& prediction = input.predictions[i];
+    const PredictionFolder& prediction = input.predictions[i];
     section.blocks.push_back(figure_html(prediction_figure(prediction, i)));
-    for (const std::string& warning : prediction.warnings) section.blocks.push_back(paragraph_html(plain("Note: " + warning)));
-    if (!prediction.comparisons.empty()) section.blocks.push_back(table_html(prediction_table(prediction)));
+    std::vector<std::string> said;
+    for (const PredictedCurve& drawn : prediction.curves) {
+      for (const std::string& warning : drawn.prediction.warnings) {
+        if (std::find(said.begin(), said.end(), warning) != said.end()) continue;
+        said.push_back(warning);
+        section.blocks.push_back(warning_html(prediction.name + ": " + warning));
+      }
+    }
+    section.blocks.push_back(folded(prediction.name + ": run by run", table_html(prediction_table(prediction))));
   }
+  section.blocks.push_back(folded("Solver statistics", table_html(solver_table(input.predictions))));
   return section;
 }
 
@@ -89,8 +102,9 @@ Page make_page(const ReportInput& input) {
       {"parameters",
        "Parameters and curves",
        {table_html(parameter_comparison(calibration)),
-        paragraph_html(plain("Parameters of Eqs. 11, 12 and 14 depend on each other: equal curves come from quite different "
-                             "values. The curves are what should be compared.")),
+        paragraph_html(
+            plain("Parameters of Eqs. 11, 12 and 14 depend on each other: equal curves come from quite different "
+                  "values. The curves are what should be compared.")),
         table_html(curve_comparison(calibration))}});
   page.sections.push_back({"state",
                            "Pressure, coordination and rattlers",

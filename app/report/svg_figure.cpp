@@ -16,7 +16,7 @@ namespace {
 constexpr double kWidth = 960;
 constexpr double kCharacterWidth = 6.6;
 constexpr double kLegendRow = 20, kLegendKey = 30, kLegendGap = 22;
-constexpr double kLeft = 64, kLeftShared = 14, kRight = 10;
+constexpr double kLeft = 74, kLeftShared = 14, kRight = 10;
 constexpr double kTitle = 22, kBottom = 44, kBottomShared = 12;
 
 struct Box {
@@ -115,10 +115,13 @@ struct PanelRenderer {
       out += text_element(box.left + box.width / 2, bottom + 37, " text-anchor=\"middle\"", to_svg(panel.x.label));
     }
     if (y_numbers) {
-      const double lx = box.left - 48, ly = box.top + box.height / 2;
-      out += text_element(lx, ly,
-                          fmt::format(" text-anchor=\"middle\" transform=\"rotate(-90 {} {})\"", pixels(lx), pixels(ly)),
-                          to_svg(panel.y.label));
+      std::size_t longest = 4;
+      for (const Tick& tick : y.ticks) longest = std::max(longest, character_count(tick.label));
+      const double lx = box.left - 17 - kCharacterWidth * static_cast<double>(std::min<std::size_t>(longest, 7)),
+                   ly = box.top + box.height / 2;
+      out += text_element(
+          lx, ly, fmt::format(" text-anchor=\"middle\" transform=\"rotate(-90 {} {})\"", pixels(lx), pixels(ly)),
+          to_svg(panel.y.label));
     }
     return out;
   }
@@ -156,7 +159,7 @@ struct PanelRenderer {
     const std::string bars = error_bar_path(symbols);
     if (!bars.empty()) out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"currentColor\"/>", bars);
     if (series.line != Line::none) {
-      out += fmt::format("<path d=\"{}\"{}/>", line_path(runs), line_attributes(series.line));
+      out += fmt::format("<path d=\"{}\"{}/>", line_path(runs), line_attributes(series.line, series.line_width));
     }
     if (series.marker != Marker::none) {
       out += fmt::format("<path d=\"{}\"{}/>", marker_path(series.marker, series.marker_size, symbols),
@@ -167,9 +170,9 @@ struct PanelRenderer {
   }
 
   std::string render() {
-    std::string out = fmt::format(
-        "<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n", clip, pixels(box.left),
-        pixels(box.top), pixels(box.width), pixels(box.height));
+    std::string out =
+        fmt::format("<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n", clip,
+                    pixels(box.left), pixels(box.top), pixels(box.width), pixels(box.height));
     out += frame();
     out += fmt::format("<g clip-path=\"url(#{})\">\n", clip);
     for (const Series& series : panel.series) out += ink(series);
@@ -192,7 +195,8 @@ Legend make_legend(const Figure& figure) {
       const std::string label = to_plain(series.label);
       if (label.empty() || std::find(seen.begin(), seen.end(), label) != seen.end()) continue;
       seen.push_back(label);
-      const double width = kLegendKey + kCharacterWidth * static_cast<double>(character_count(series.label)) + kLegendGap;
+      const double width =
+          kLegendKey + kCharacterWidth * static_cast<double>(character_count(series.label)) + kLegendGap;
       if (x > 10 && x + width > kWidth) {
         x = 10;
         y += kLegendRow;
@@ -200,12 +204,13 @@ Legend make_legend(const Figure& figure) {
       legend.svg += fmt::format("<g class=\"{}\">", colour_class(series.colour));
       const PixelPoint left{x, y - 4, 0, 0}, middle{x + 12, y - 4, 0, 0}, right{x + 24, y - 4, 0, 0};
       if (series.line != Line::none) {
-        legend.svg += fmt::format("<path d=\"{}\"{}/>", line_path({{left, right}}), line_attributes(series.line));
+        legend.svg += fmt::format("<path d=\"{}\"{}/>", line_path({{left, right}}),
+                                  line_attributes(series.line, series.line_width));
       }
       if (series.marker != Marker::none) {
-        legend.svg += fmt::format("<path d=\"{}\"{}/>",
-                                  marker_path(series.marker, std::max(3.0, series.marker_size), {middle}),
-                                  marker_attributes(series.marker, series.open_marker));
+        legend.svg +=
+            fmt::format("<path d=\"{}\"{}/>", marker_path(series.marker, std::max(3.0, series.marker_size), {middle}),
+                        marker_attributes(series.marker, series.open_marker));
       }
       legend.svg += "</g>" + text_element(x + kLegendKey, y, "", to_svg(series.label));
       x += width;
@@ -227,7 +232,7 @@ RenderedFigure render_svg(const Figure& figure) {
   std::vector<const Panel*> all;
   for (const Panel& panel : figure.panels) all.push_back(&panel);
 
-  const double first_left = shared ? kLeft + 6 : kLeft;
+  const double first_left = kLeft;
   const double column_left = shared ? kLeftShared : kLeft;
   const double width = (kWidth - first_left - column_left * (columns - 1) - kRight * columns) / columns;
   const double row_height = kTitle + figure.panel_height + (shared ? kBottomShared : kBottom);
@@ -238,10 +243,10 @@ RenderedFigure render_svg(const Figure& figure) {
     const Panel& panel = figure.panels[static_cast<std::size_t>(i)];
     const int row = i / columns, column = i % columns;
     const auto panels = shared ? all : std::vector<const Panel*>{&panel};
-    const int x_ticks = std::max(3, static_cast<int>(width / 75));
+    const int x_ticks = std::max(3, static_cast<int>(width / 60));
     PanelRenderer renderer{panel, make_axis(panels, true, x_ticks), make_axis(panels, false, 5), {}, true, true, {}};
-    renderer.box = {first_left + column * (width + kRight + column_left), legend.height + row * row_height + kTitle, width,
-                    figure.panel_height};
+    renderer.box = {first_left + column * (width + kRight + column_left), legend.height + row * row_height + kTitle,
+                    width, figure.panel_height};
     renderer.x_numbers = !shared || i + columns >= count;
     renderer.y_numbers = !shared || column == 0;
     renderer.clip = fmt::format("{}-clip-{}", figure.id, i);
@@ -251,10 +256,11 @@ RenderedFigure render_svg(const Figure& figure) {
   }
   rendered.svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" "
-      "aria-labelledby=\"{}-title {}-description\">\n<title id=\"{}-title\">{}</title>\n<desc id=\"{}-description\">{}</desc>\n"
+      "aria-labelledby=\"{}-title {}-description\">\n<title id=\"{}-title\">{}</title>\n<desc "
+      "id=\"{}-description\">{}</desc>\n"
       "{}{}</svg>\n",
-      pixels(kWidth), pixels(height), figure.id, figure.id, figure.id, escape_markup(figure.title), figure.id,
-      escape_markup(figure.description), legend.svg, body);
+      pixels(kWidth), pixels(height), figure.id, figure.id, figure.id, to_svg(plain(figure.title)), figure.id,
+      to_svg(plain(figure.description)), legend.svg, body);
   return rendered;
 }
 

@@ -10,8 +10,8 @@ namespace grainlaw::app::report {
 
 struct RenderedFigure {
   std::string svg;
-  int undefined_points = 0;   ///< left out because x or y is not finite (or not positive on a logarithmic axis)
-  int outside_points = 0;     ///< symbols beyond a range that the figure fixes
+  int undefined_points = 0;  ///< left out because x or y is not finite (or not positive on a logarithmic axis)
+  int outside_points = 0;    ///< symbols beyond a range that the figure fixes
 };
 
 RenderedFigure render_svg(const Figure& figure);

@@ -19,9 +19,11 @@ std::string marker_path(Marker marker, double size, const std::vector<PixelPoint
   const std::string diagonal = pixels(1.2 * size), double_diagonal = pixels(2.4 * size);
   for (const PixelPoint& p : points) {
     switch (marker) {
-      case Marker::none: break;
+      case Marker::none:
+        break;
       case Marker::circle:
-        path += fmt::format("M{} {}a{} {} 0 1 0 {} 0a{} {} 0 1 0 -{} 0z", pixels(p.x - size), pixels(p.y), s, s, d, s, s, d);
+        path += fmt::format("M{} {}a{} {} 0 1 0 {} 0a{} {} 0 1 0 -{} 0z", pixels(p.x - size), pixels(p.y), s, s, d, s,
+                            s, d);
         break;
       case Marker::square:
         path += fmt::format("M{} {}h{}v{}h-{}z", pixels(p.x - 0.9 * size), pixels(p.y - 0.9 * size), pixels(1.8 * size),
@@ -64,8 +66,9 @@ std::string line_path(const std::vector<std::vector<PixelPoint>>& runs) {
   return path;
 }
 
-std::string line_attributes(Line line) {
-  std::string attributes = R"( fill="none" stroke="currentColor" stroke-width="1.8" stroke-linejoin="round")";
+std::string line_attributes(Line line, double width) {
+  std::string attributes = fmt::format(
+      " fill=\"none\" stroke=\"currentColor\" stroke-width=\"{}\" stroke-linejoin=\"round\"", pixels(width));
   if (line == Line::dashed) attributes += R"( stroke-dasharray="7 4")";
   if (line == Line::dotted) attributes += R"( stroke-dasharray="1.5 3.5" stroke-linecap="round")";
   return attributes;

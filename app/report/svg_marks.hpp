@@ -28,7 +28,7 @@ std::string marker_attributes(Marker marker, bool open);
 /// Path data through runs of points; a new run starts after each undefined point.
 std::string line_path(const std::vector<std::vector<PixelPoint>>& runs);
 
-std::string line_attributes(Line line);
+std::string line_attributes(Line line, double width);
 
 /// Path data of the error bars, with caps; empty when there are none.
 std::string error_bar_path(const std::vector<PixelPoint>& points);

@@ -16,8 +16,12 @@ Table curve_comparison(const fit::Calibration& calibration);
 Table stage_table(const fit::Calibration& calibration);
 /// Misfit of the coupled fit per test and quantity.
 Table residual_table(const fit::Calibration& calibration);
-/// Bias and RMS of every prediction.
-Table prediction_table(const PredictionCase& prediction);
+/// Bias and normalised RMS of every model and start, mean over seeds.
+Table prediction_summary(const std::vector<PredictionFolder>& predictions);
+/// One prediction in full.
+Table prediction_table(const PredictionFolder& prediction);
+/// Solver statistics of every curve.
+Table solver_table(const std::vector<PredictionFolder>& predictions);
 /// Per run: seed, particles, rows, steps, seconds, largest energy ratio, energy residual and inertial number.
 Table run_table(const ReportInput& input);
 Table provenance_table(const ReportInput& input);

@@ -111,12 +111,23 @@ std::string escape_markup(std::string_view text) {
   out.reserve(text.size());
   for (const char c : text) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -127,10 +138,18 @@ std::string to_html(const Text& text) {
   for (const TextRun& run : text.runs) {
     const std::string content = escape_markup(run.text);
     switch (run.style) {
-      case Style::upright: out += content; break;
-      case Style::italic: out += "<i>" + content + "</i>"; break;
-      case Style::subscript: out += "<sub>" + content + "</sub>"; break;
-      case Style::superscript: out += "<sup>" + content + "</sup>"; break;
+      case Style::upright:
+        out += content;
+        break;
+      case Style::italic:
+        out += "<i>" + content + "</i>";
+        break;
+      case Style::subscript:
+        out += "<sub>" + content + "</sub>";
+        break;
+      case Style::superscript:
+        out += "<sup>" + content + "</sup>";
+        break;
     }
   }
   return out;

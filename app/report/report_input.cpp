@@ -1,0 +1,127 @@
+#include "app/report/report_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/files/calibration_file.hpp"
+#include "app/files/parameters_file.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+void require_file(const fs::path& file, const std::string& command) {
+  std::error_code ignored;
+  if (fs::is_regular_file(file, ignored)) return;
+  throw InvalidInput(fmt::format("{} is missing; make it with: {}", file.string(), command));
+}
+
+/// `read()`; what it refuses, a missing series for example, is answered with the command that makes it.
+template <class Read>
+auto with_remedy(const std::string& command, const Read& read) {
+  try {
+    return read();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}; make it anew with: {}", error.what(), command));
+  }
+}
+
+std::string calibrate_command(const fs::path& dir) {
+  return fmt::format("grainlaw calibrate SPEC.json -o {}", dir.string());
+}
+
+std::vector<fs::path> prediction_folders(const fs::path& dir, const std::string& command) {
+  std::vector<fs::path> folders;
+  std::error_code absent;
+  for (const auto& entry : fs::directory_iterator(dir / "predictions", absent)) {
+    if (entry.is_directory()) folders.push_back(entry.path());
+  }
+  if (folders.empty()) {
+    throw InvalidInput(
+        fmt::format("{} holds no prediction; make one with: {}", (dir / "predictions").string(), command));
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+void add_dataset(Dataset dataset, const std::string& expected_digest, ReportInput& input) {
+  if (!expected_digest.empty() && expected_digest != dataset.digest) {
+    input.warnings.push_back(
+        "parameters.json was fitted to another data set than the one in dataset/ (digests differ).");
+  }
+  input.provenance.push_back({"digest of the data set", dataset.digest, "dataset/dataset.json"});
+  add_facts(dataset.provenance, "", "dataset/dataset.json", input.provenance);
+  add_facts(dataset.spec, "spec.", "dataset/dataset.json", input.provenance);
+  for (DatasetTest& test : dataset.tests) {
+    for (const std::string& warning : test.warnings) input.warnings.push_back(test.record.name + ": " + warning);
+    input.costs.push_back(test.cost);
+    input.tests.push_back(std::move(test.record));
+  }
+}
+
+}  // namespace
+
+ReportInput read_report_input(const fs::path& dir) {
+  const std::string calibrate = calibrate_command(dir);
+  require_file(dir / "dataset" / "dataset.json", calibrate);
+  require_file(dir / "parameters.json", calibrate);
+  require_file(dir / "calibration.json", calibrate);
+  const std::string predict_into = fmt::format("grainlaw predict {} PATH.json --dem -o {}/",
+                                               (dir / "parameters.json").string(), (dir / "predictions").string());
+
+  ReportInput input;
+  ParametersFile parameters = with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); });
+  input.calibration = std::move(parameters.calibration);
+  with_remedy(calibrate, [&] { read_calibration(dir / "calibration.json", input.calibration); });
+  add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.dataset_digest, input);
+  add_facts(parameters.provenance, "", "parameters.json", input.provenance);
+
+  for (const fs::path& folder : prediction_folders(dir, predict_into + "NAME")) {
+    const std::string name = folder.filename().string();
+    require_file(folder / "prediction.json", predict_into + name);
+    input.predictions.push_back(with_remedy(predict_into + name, [&] { return read_prediction(folder); }));
+    add_facts(input.predictions.back().provenance, "", "predictions/" + name + "/prediction.json", input.provenance);
+  }
+  return input;
+}
+
+fit::Calibration read_fitted_parameters(const fs::path& dir) {
+  const std::string calibrate = calibrate_command(dir);
+  require_file(dir / "parameters.json", calibrate);
+  return with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); }).calibration;
+}
+
+bool has_values(const fit::Calibration& calibration, std::string_view group) {
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const std::string_view name = parameter_table()[i].name;
+    const bool member = name.starts_with(group) && (name.size() == group.size() || name[group.size()] == '.');
+    if (member && calibration.estimates[i].status == fit::Status::not_identified) return false;
+  }
+  return true;
+}
+
+std::vector<TestRecord> dem_records(const PredictionFolder& prediction) {
+  std::vector<TestRecord> records;
+  if (prediction.dem) {
+    for (const DatasetTest& test : prediction.dem->tests) records.push_back(test.record);
+  }
+  return records;
+}
+
+void add_facts(const Json& document, const std::string& prefix, const std::string& file, std::vector<Fact>& facts) {
+  if (document.is_null()) return;
+  if (document.is_object()) {
+    for (const auto& [key, value] : document.items()) {
+      add_facts(value, prefix.empty() || prefix.back() == '.' ? prefix + key : prefix + "." + key, file, facts);
+    }
+    return;
+  }
+  const std::string value = document.is_string() ? document.get<std::string>()
+                                                 : document.dump(-1, ' ', false, Json::error_handler_t::replace);
+  facts.push_back({prefix, value, file});
+}
+
+}  // namespace grainlaw::app::report

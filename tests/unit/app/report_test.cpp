@@ -1,0 +1,165 @@
+#include "app/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "app/files/calibration_file.hpp"
+#include "app/files/dataset.hpp"
+#include "app/files/parameters_file.hpp"
+#include "app/files/series_csv.hpp"
+#include "app/output_folder.hpp"
+#include "app/report/dem_series.hpp"
+#include "app/report/report_input.hpp"
+#include "model/error.hpp"
+#include "tests/support/report_scene.hpp"
+#include "tests/support/well_formed.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+Dataset write_tests(const fs::path& folder, const std::vector<TestRecord>& tests) {
+  fs::create_directories(folder);
+  Dataset dataset;
+  for (const TestRecord& test : tests) {
+    write_series(folder / (test.name + ".csv"), test.rows);
+    dataset.tests.push_back({test, "", "", {1000, 1e-8, 0.5}, {}});
+  }
+  dataset.seeds = report::seeds_of(tests);
+  write_dataset_index(folder, dataset);
+  return dataset;
+}
+
+/// The made-up scene as the commands would leave it on disk.
+class ReportFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::path(::testing::TempDir()) /
+           ("report-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(dir_);
+    report::ReportInput scene = test::report_scene();
+    const Dataset dataset = write_tests(dir_ / "dataset", scene.tests);
+    scene.calibration.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
+    write_parameters(dir_ / "parameters.json", {scene.calibration, dataset.digest, Json{{"version", "0.1.0"}}});
+    write_calibration(dir_ / "calibration.json", scene.calibration, {}, dataset.digest, {{"version", "0.1.0"}});
+    for (PredictionFolder& prediction : scene.predictions) {
+      const fs::path folder = dir_ / "predictions" / prediction.name;
+      prediction.dem = write_tests(folder / "dem", report::dem_records(prediction));
+      write_prediction(folder, prediction);
+    }
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+
+  std::string page() const {
+    write_report(dir_, dir_ / "report.html");
+    std::ifstream in(dir_ / "report.html");
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+  /// What write_report says while `file` is not there.
+  std::string message_without(const std::string& file) const {
+    fs::rename(dir_ / file, dir_ / "away");
+    std::string message = "no error";
+    try {
+      write_report(dir_, dir_ / "report.html");
+    } catch (const InvalidInput& error) {
+      message = error.what();
+    }
+    EXPECT_FALSE(fs::exists(dir_ / "report.html"));
+    fs::rename(dir_ / "away", dir_ / file);
+    return message;
+  }
+
+  fs::path dir_;
+};
+
+int count(const std::string& text, const std::string& what) {
+  int n = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+TEST_F(ReportFolder, OnePageWithEveryFigureAndNothingFromOutside) {
+  const std::string html = page();
+  EXPECT_EQ(test::first_markup_error(html), "");
+  for (const char* id : {"density", "scaled", "stress-ratio", "fabric", "shear-laws", "residuals", "prediction-1",
+                         "prediction-2", "quality-isotropic", "quality-shear"}) {
+    EXPECT_EQ(count(html, "<figure id=\"" + std::string(id) + "\">"), 1) << id;
+  }
+  EXPECT_EQ(count(html, "<svg "), 10);
+  for (const char* outside : {" src=", "@import", "<link", "<iframe", "<img", "url(http", "href=\"http"}) {
+    EXPECT_EQ(count(html, outside), 0) << outside;
+  }
+  EXPECT_EQ(count(html, "http"), count(html, "http://www.w3.org/2000/svg") + count(html, "http-equiv"));
+}
+
+TEST_F(ReportFolder, NoNumberOfThePageIsUndefined) {
+  const std::string html = page();
+  for (const char* word : {"nan", "NaN", "inf\"", "inf ", "inf,", ">inf", "Infinity"})
+    EXPECT_EQ(count(html, word), 0) << word;
+}
+
+TEST_F(ReportFolder, EveryMissingFileNamesTheCommandThatMakesIt) {
+  for (const char* file :
+       {"parameters.json", "calibration.json", "dataset/dataset.json", "dataset/D2-0.700-seed1.csv"}) {
+    const std::string message = message_without(file);
+    EXPECT_NE(message.find(file), std::string::npos) << message;
+    EXPECT_NE(message.find("grainlaw calibrate SPEC.json -o " + dir_.string()), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+  for (const char* file :
+       {"predictions/uniaxial-0.695/prediction.json", "predictions/uniaxial-0.695/comparison.json",
+        "predictions/uniaxial-0.695/dem/dataset.json", "predictions/uniaxial-0.695/evolution-law-seed12.csv"}) {
+    const std::string message = message_without(file);
+    EXPECT_NE(message.find(file), std::string::npos) << message;
+    EXPECT_NE(message.find("grainlaw predict"), std::string::npos) << message;
+    EXPECT_NE(message.find("predictions/uniaxial-0.695"), std::string::npos) << message;
+  }
+  EXPECT_NE(message_without("predictions").find("grainlaw predict"), std::string::npos);
+}
+
+TEST_F(ReportFolder, ParametersThatAreNotIdentifiedAreWordsAndDrawNoCurve) {
+  ParametersFile parameters = read_parameters(dir_ / "parameters.json");
+  for (const char* name : {"stress_ratio_max.alpha", "steady_pressure.p0"}) {
+    parameters.calibration.estimates[parameter_index(name)] = {std::nan(""), std::nan(""), fit::Status::not_identified,
+                                                               "one density"};
+  }
+  write_parameters(dir_ / "parameters.json", parameters);
+  const std::string html = page();
+  EXPECT_EQ(test::first_markup_error(html), "");
+  EXPECT_NE(html.find("Eq. 20 not identified by these tests"), std::string::npos);
+  EXPECT_NE(summary_table(dir_).find("not identified"), std::string::npos);
+  EXPECT_EQ(count(html, "nan"), 0);
+}
+
+TEST_F(ReportFolder, TheSummaryIsARectangleOfText) {
+  std::istringstream lines(summary_table(dir_));
+  std::string line;
+  int rows = 0;
+  std::size_t width = 0;
+  while (std::getline(lines, line)) {
+    std::size_t characters = 0;
+    for (const char c : line) characters += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+    if (rows == 0) width = characters;
+    EXPECT_EQ(characters, width) << line;
+    ++rows;
+  }
+  EXPECT_EQ(rows, static_cast<int>(kParameterCount) + 2);
+}
+
+TEST_F(ReportFolder, AnotherDataSetThanTheFittedOneIsSaid) {
+  ParametersFile parameters = read_parameters(dir_ / "parameters.json");
+  parameters.dataset_digest[0] = parameters.dataset_digest[0] == '0' ? '1' : '0';
+  write_parameters(dir_ / "parameters.json", parameters);
+  EXPECT_NE(page().find("another data set"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace grainlaw::app
