@@ -62,33 +62,39 @@ void fill_path(Observation& row, const StraightSegment& segment, int index, doub
   }
 }
 
-/// Energies out of balance by more than `limit`, and by more than rounding can do.
-bool unbalanced(const Observation& row, const Ledger& ledger, double limit) {
-  if (std::abs(row.energy_residual) <= limit) return false;
-  const double D = ledger.D_contact + ledger.D_background;
-  const double lost = std::abs(row.energy_residual) * (std::abs(ledger.W_box) + ledger.E_kin_start + D);
-  return !(lost <= kRounding * (row.E_pot + row.E_kin + std::abs(ledger.E_start)));
-}
+/// How far the energies of a run are out of balance, row by row. Early in shear W_box is negative before it grows, and
+/// a residual relative to the work *so far* would judge by a scale that passes zero. The judge's scale is therefore the
+/// largest |W_box| of the rows so far, which equals the column energy_residual wherever the work is at its largest.
+class BalanceJudge {
+ public:
+  /// |imbalance| over max |W_box| + E_kin(0) + D; 0 where adding up the energies can lose as much by rounding.
+  double residual(const Observation& row, const Ledger& ledger) {
+    largest_work_ = std::max(largest_work_, std::abs(ledger.W_box));
+    const double exchanged = ledger.E_kin_start + ledger.D_contact + ledger.D_background;
+    const double imbalance = std::abs(row.energy_residual) * (std::abs(ledger.W_box) + exchanged);
+    if (imbalance <= kRounding * (row.E_pot + row.E_kin + std::abs(ledger.E_start))) return 0;
+    return imbalance / (largest_work_ + exchanged);
+  }
 
-std::vector<std::string> warnings_for(const std::vector<Observation>& rows, const ElementTestOptions& options) {
-  std::vector<std::string> warnings;
-  const auto warn = [&](const char* what, double Observation::*value, double limit) {
-    std::size_t count = 0;
-    const Observation* worst = nullptr;
-    for (const Observation& row : rows) {
-      if (!(std::abs(row.*value) > limit)) continue;
-      ++count;
-      if (!worst || std::abs(row.*value) > std::abs(worst->*value)) worst = &row;
-    }
-    if (worst) {
-      warnings.push_back(fmt::format("{} above {} in {} of {} rows, up to {:.3g} at nu = {:.4f}", what, limit, count,
-                                     rows.size(), worst->*value, worst->nu));
-    }
-  };
-  warn("energy residual", &Observation::energy_residual, options.warn_energy_residual);
-  warn("inertial number", &Observation::inertial_number, kMaxInertialNumber);
-  return warnings;
-}
+ private:
+  double largest_work_ = 0;  // [J]
+};
+
+/// Rows on which a quantity was beyond its limit.
+struct Excess {
+  std::size_t rows = 0;
+  double worst = 0, nu = 0;  // the largest value and where it was
+
+  void note(double value, double limit, double at_nu) {
+    if (!(value > limit)) return;
+    ++rows;
+    if (value > worst) worst = value, nu = at_nu;
+  }
+  void report(std::vector<std::string>& warnings, const char* what, double limit, std::size_t of) const {
+    if (rows == 0) return;
+    warnings.push_back(fmt::format("{} above {} in {} of {} rows, up to {:.3g} at nu = {:.4f}", what, limit, rows, of, worst, nu));
+  }
+};
 
 /// One run in progress: simulation, path and what has been seen so far.
 class TestRun {
@@ -143,7 +149,8 @@ class TestRun {
   }
 
   ElementTest finish() {
-    result_.warnings = warnings_for(result_.rows, options_);
+    imbalance_.report(result_.warnings, "energy residual", options_.warn_energy_residual, result_.rows.size());
+    rate_.report(result_.warnings, "inertial number", kMaxInertialNumber, result_.rows.size());
     result_.end = std::move(sim_.state);
     return std::move(result_);
   }
@@ -166,11 +173,14 @@ class TestRun {
     Observation row = observe(sim_, motion, N_);
     fill_path(row, segment, index, e, sheared_);
     result_.rows.push_back(row);
-    if (unbalanced(row, sim_.state.ledger, options_.stop_energy_residual)) {
+    const double residual = judge_.residual(row, sim_.state.ledger);
+    imbalance_.note(residual, options_.warn_energy_residual, row.nu);
+    rate_.note(row.inertial_number, kMaxInertialNumber, row.nu);
+    if (!(residual <= options_.stop_energy_residual)) {
       throw Error(fmt::format(
           "energy balance: residual {:.3g} at row {} (segment {}, nu = {:.6g}, step {}) is beyond {}; the results would be "
           "wrong, give a smaller time_step_fraction than {}",
-          row.energy_residual, result_.rows.size() - 1, index, row.nu, sim_.state.step, options_.stop_energy_residual,
+          residual, result_.rows.size() - 1, index, row.nu, sim_.state.step, options_.stop_energy_residual,
           options_.engine.time_step_fraction));
     }
   }
@@ -183,6 +193,8 @@ class TestRun {
   Simulation sim_;
   double engine_dt_ = 0;    // [s]
   double total_steps_ = 0;  // of all segments
+  BalanceJudge judge_;
+  Excess imbalance_, rate_;
   double sheared_ = 0;      // shear path of the segments that are done
   ElementTest result_;
 };

@@ -1,7 +1,10 @@
 #pragma once
-// One file format for kept states and checkpoints: magic, format version, JSON header (counts, step, seed, digest),
-// little-endian 64-bit numbers, SHA-256 of all that precedes. Written to a temporary name, synced and renamed, so a
-// final name never holds half a file. Read: checksum first, then everything else. Layout: docs/formats.md.
+// One file format for kept states and checkpoints; integers and doubles little-endian:
+//   "GRAINLAW" | version u32 | length of the header u32 | header, JSON | numbers, 8 bytes each | SHA-256 of all before
+//   numbers: material, time, ledger, sums, H and ref_H by rows; radius, mass, s, v; a (if has_accelerations) and
+//   reference fractions (if has_list_reference), each array whole; ids. SI units, in the order of dem/state.hpp.
+// Written to a temporary name, synced and renamed, so a final name never holds half a file. Read: checksum first, then
+// everything else.
 
 #include <filesystem>
 
