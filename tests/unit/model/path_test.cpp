@@ -1,0 +1,135 @@
+#include "model/path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "model/error.hpp"
+
+namespace grainlaw {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PathSegment segment(Mode mode, ExtentKind kind, double extent, bool reverse = false) {
+  return {mode, direction_of(mode, "xyz", reverse), kind, extent};
+}
+
+Path path_of(double nu, std::vector<PathSegment> segments) { return {nu, Branch::unloading, std::move(segments)}; }
+
+/// The message with which `path` is refused; empty when it is accepted.
+std::string refusal(const Path& path) {
+  try {
+    resolve(path);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(Path, DirectionsAreThoseOfThePaper) {
+  const auto rate = [](Mode mode) { return Eigen::Vector3d(direction_of(mode).tensor.diagonal()); };
+  EXPECT_EQ(rate(Mode::ISO), Eigen::Vector3d(-1, -1, -1));
+  EXPECT_EQ(rate(Mode::UNI), Eigen::Vector3d(0, 0, -1));
+  EXPECT_EQ(rate(Mode::D2), Eigen::Vector3d(1, 0, -1));
+  EXPECT_EQ(rate(Mode::D3), Eigen::Vector3d(0.5, 0.5, -1));
+}
+
+TEST(Path, AxesAndReversal) {
+  EXPECT_EQ(Eigen::Vector3d(direction_of(Mode::D2, "yzx").tensor.diagonal()), Eigen::Vector3d(-1, 1, 0));
+  EXPECT_EQ(Eigen::Vector3d(direction_of(Mode::UNI, "zyx", true).tensor.diagonal()), Eigen::Vector3d(1, 0, 0));
+  for (const char* axes : {"", "xy", "xyzz", "xxz", "abc", "XYZ"}) {
+    EXPECT_THROW(direction_of(Mode::D2, axes), InvalidInput) << axes;
+  }
+  EXPECT_THROW(direction_of(Mode::tensor), InvalidInput);
+}
+
+TEST(Path, ExtentsBecomeLengths) {
+  EXPECT_NEAR(resolve(path_of(0.7, {segment(Mode::D2, ExtentKind::eps_dev, 0.3)}))[0].length, 0.3 / std::sqrt(3.0),
+              1e-15);
+  EXPECT_NEAR(resolve(path_of(0.7, {segment(Mode::D3, ExtentKind::eps_dev, 0.3)}))[0].length, 0.2, 1e-15);
+  EXPECT_NEAR(resolve(path_of(0.7, {segment(Mode::UNI, ExtentKind::eps_dev, 0.1)}))[0].length, 0.1, 1e-15);
+  EXPECT_NEAR(resolve(path_of(0.7, {segment(Mode::ISO, ExtentKind::eps_vol, 0.03)}))[0].length, 0.01, 1e-15);
+  EXPECT_NEAR(resolve(path_of(0.7, {segment(Mode::ISO, ExtentKind::eps_vol, 0.03, true)}))[0].length, 0.01, 1e-15);
+}
+
+TEST(Path, UniaxialDeviatoricStrainIsTheVolumetricOne) {
+  // UNI: eps_dev = |eps_vol| = ln(nu/nu_0)
+  const auto uni = resolve(path_of(0.695, {segment(Mode::UNI, ExtentKind::target_nu, 0.82)})).at(0);
+  EXPECT_NEAR(uni.length, std::log(0.82 / 0.695), 1e-15);
+  EXPECT_NEAR(deviatoric_norm(uni.strain(uni.length).tensor), std::log(0.82 / 0.695), 1e-15);
+  EXPECT_NEAR(uni.nu(uni.length), 0.82, 1e-15);
+  EXPECT_NEAR(uni.strain(uni.length).tensor.trace(), -std::log(0.82 / 0.695), 1e-15);
+}
+
+TEST(Path, SegmentsContinueEachOther) {
+  const auto s = resolve(
+      path_of(0.70, {segment(Mode::D2, ExtentKind::eps_dev, 0.15), segment(Mode::ISO, ExtentKind::target_nu, 0.73),
+                     segment(Mode::ISO, ExtentKind::target_nu, 0.70, true)}));
+  ASSERT_EQ(s.size(), 3U);
+  EXPECT_EQ(s[0].nu(s[0].length), 0.70) << "constant volume";
+  for (std::size_t k = 0; k + 1 < s.size(); ++k) {
+    EXPECT_NEAR(s[k].nu(s[k].length), s[k + 1].nu_start, 1e-15);
+    EXPECT_LE((s[k].strain(s[k].length).tensor - s[k + 1].strain_start.tensor).norm(), 1e-15);
+  }
+  EXPECT_NEAR(s[2].nu(s[2].length), 0.70, 1e-15);
+  EXPECT_LE((s[2].strain(s[2].length).tensor - s[0].strain(s[0].length).tensor).norm(), 1e-15) << "there and back";
+}
+
+TEST(Path, ShearDirectionIsThatOfTheFirstSegmentWithADeviator) {
+  const auto s = resolve(
+      path_of(0.70, {segment(Mode::ISO, ExtentKind::target_nu, 0.73), segment(Mode::D3, ExtentKind::eps_dev, 0.1),
+                     segment(Mode::D2, ExtentKind::eps_dev, 0.1)}));
+  const Deviator<double> N = shear_direction(s);
+  EXPECT_NEAR(N.norm(), 1, 1e-15);
+  EXPECT_GT(N.dot(deviator<double>(Eigen::Matrix3d(Eigen::Vector3d(0, 0, 1).asDiagonal()))), 0.99)
+      << "compression of z is positive";
+  EXPECT_TRUE(shear_direction(resolve(path_of(0.70, {segment(Mode::ISO, ExtentKind::target_nu, 0.73)}))).isZero());
+}
+
+TEST(Path, RatesOfASegment) {
+  const auto uni = resolve(path_of(0.70, {segment(Mode::UNI, ExtentKind::eps_vol, 0.1)})).at(0);
+  EXPECT_NEAR(uni.eps_dev_rate(), 1, 1e-15);
+  EXPECT_NEAR(uni.eps_vol_rate(), -1, 1e-15);
+}
+
+TEST(Path, RefusesExtentsThatTheDirectionCannotReach) {
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::ISO, ExtentKind::eps_dev, 0.1)})).find("segments[0]"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(path_of(0.7, {segment(Mode::D2, ExtentKind::eps_dev, 0.1), segment(Mode::D2, ExtentKind::eps_vol, 0.1)}))
+          .find("segments[1]"),
+      std::string::npos);
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::D3, ExtentKind::target_nu, 0.8)})), "");
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::UNI, ExtentKind::target_nu, 0.65)})), "")
+      << "compression to a smaller nu";
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::UNI, ExtentKind::target_nu, 0.75, true)})), "");
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::UNI, ExtentKind::target_nu, 0.7)})), "") << "nothing to do";
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::UNI, ExtentKind::target_nu, 0.95)})), "");
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::ISO, ExtentKind::eps_vol, 0.3)})), "") << "nu = 0.945";
+}
+
+TEST(Path, RefusesNumbersThatAreNone) {
+  for (const double bad : {kNaN, kInfinity, -0.1, 0.0, -kInfinity}) {
+    EXPECT_NE(refusal(path_of(0.7, {segment(Mode::D2, ExtentKind::eps_dev, bad)})), "") << bad;
+    EXPECT_NE(refusal(path_of(bad, {segment(Mode::D2, ExtentKind::eps_dev, 0.1)})), "") << bad;
+  }
+  EXPECT_NE(refusal(path_of(0.91, {})), "");
+  PathSegment still{Mode::tensor, {}, ExtentKind::eps_dev, 0.1};
+  EXPECT_NE(refusal(path_of(0.7, {still})), "") << "no direction";
+  still.direction.tensor(0, 0) = kNaN;
+  EXPECT_NE(refusal(path_of(0.7, {still})), "");
+}
+
+TEST(Path, NamesOfModesAndBranches) {
+  EXPECT_EQ(to_string(Mode::ISO) + to_string(Mode::UNI) + to_string(Mode::D2) + to_string(Mode::D3), "ISOUNID2D3");
+  EXPECT_EQ(to_string(Branch::loading), "loading");
+  EXPECT_EQ(to_string(Branch::unloading), "unloading");
+}
+
+}  // namespace
+}  // namespace grainlaw
