@@ -65,7 +65,10 @@ ReferenceSums reference_sums(const Packing& packing, const Material& material, c
     if (motion.transport == Transport::homogeneous) {
       carried = motion.L * pair.x_ij;
     } else {
-      carried = -(motion.L * (packing.H * pair.image.cast<double>()));
+      const Eigen::Vector3d cells_apart =  // spheres sit in the cell, their images in others
+          fraction(packing, pair.i).array().floor() - fraction(packing, pair.j).array().floor() -
+          pair.image.cast<double>().array();
+      carried = motion.L * packing.H * cells_apart;
     }
     const Eigen::Vector3d u = velocity(packing, pair.i) - velocity(packing, pair.j) + carried;
     const double delta_rate = -u.dot(n);

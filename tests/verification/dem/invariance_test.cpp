@@ -1,0 +1,184 @@
+// What must not matter: the number of threads (same bits), a uniform velocity (Galilei), the order of the spheres'
+// names, a restart from a copied state (same bits), the skin of the list.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "dem/averages.hpp"
+#include "dem/relax.hpp"
+#include "tests/support/dem_families.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+using scene::Draw;
+
+constexpr double kSpeed = 2;  // m/s
+
+/// A dense packing of three blocks of spheres that bursts: deep overlaps, many contacts made and lost, many rebuilds.
+State bursting_packing() {
+  Draw draw(61);
+  State state = scene::random_state(600, 3, 0.7, Eigen::Matrix3d::Identity(), draw);
+  scene::random_velocities(state.packing, kSpeed, draw);
+  return state;
+}
+
+/// A shaken, jammed packing: its motion does not amplify rounding much within some hundred steps.
+State shaken_packing(const Material& material = {}) {
+  Draw draw(61);
+  State state = scene::random_state(300, 3, 0.7, Eigen::Matrix3d::Identity(), draw, material);
+  relax(state, EngineOptions{}, RelaxOptions{}, RunControl{});
+  scene::random_velocities(state.packing, kSpeed, draw);
+  return state;
+}
+
+Drive uniaxial(const State& state) {
+  const Eigen::Vector3d direction(0, 0, -1);
+  DriveOptions options;
+  options.strain_rate = 2e4;
+  options.profile = Profile::constant;
+  return make_drive(scene::segment_of(direction.asDiagonal(), 0.05, 0.7), options, state.packing.H);
+}
+
+void advance_along(Simulation& sim, const Drive& drive, int from, int to) {
+  for (int k = from; k < to; ++k) advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+}
+
+/// Every bit that the state's future depends on.
+std::vector<std::uint64_t> bits_of(const State& state) {
+  std::vector<std::uint64_t> bits;
+  const Packing& p = state.packing;
+  for (const auto* a : {&p.radius, &p.mass, &p.sx, &p.sy, &p.sz, &p.vx, &p.vy, &p.vz, &state.ax, &state.ay, &state.az,
+                        &state.ref_x, &state.ref_y, &state.ref_z}) {
+    for (const double x : *a) bits.push_back(std::bit_cast<std::uint64_t>(x));
+  }
+  const Ledger& l = state.ledger;
+  const PassSums& s = state.sums;
+  for (const double x : {l.W_box, l.D_contact, l.D_background, l.E_start, l.E_kin_start, s.box_power, s.contact_power,
+                         s.E_pot, s.drag_power, state.time}) {
+    bits.push_back(std::bit_cast<std::uint64_t>(x));
+  }
+  for (const double x : p.H.reshaped()) bits.push_back(std::bit_cast<std::uint64_t>(x));
+  for (const double x : state.ref_H.reshaped()) bits.push_back(std::bit_cast<std::uint64_t>(x));
+  bits.push_back(state.step);
+  return bits;
+}
+
+Simulation run_with_threads(int threads) {
+  const State state = bursting_packing();
+  Simulation sim = scene::start(state, 0.1, threads);
+  open_ledger(sim);
+  advance_along(sim, uniaxial(state), 0, 300);
+  return sim;
+}
+
+TEST(Invariance, SameBitsForAnyNumberOfThreads) {
+  const Simulation one = run_with_threads(1);
+  ASSERT_GT(one.rebuilds, 1U) << "the list must have been rebuilt on the way";
+  const Observation seen = observe(one, scene::at_rest(one.state), Deviator<double>::Zero());
+  for (const int threads : {2, 3, 4, 8}) {
+    const Simulation many = run_with_threads(threads);
+    EXPECT_TRUE(bits_of(many.state) == bits_of(one.state)) << threads << " threads";
+    const Observation seen_too = observe(many, scene::at_rest(many.state), Deviator<double>::Zero());
+    EXPECT_EQ(seen.stress.tensor, seen_too.stress.tensor);
+    EXPECT_EQ(seen.fabric.tensor, seen_too.fabric.tensor);
+    EXPECT_EQ(seen.mean_overlap, seen_too.mean_overlap);
+    EXPECT_EQ(seen.E_pot, seen_too.E_pot);
+  }
+}
+
+TEST(Invariance, SameBitsWhenContinuedFromACopy) {
+  const State state = bursting_packing();
+  const Drive drive = uniaxial(state);
+  Simulation whole = scene::start(state, 0.1);
+  open_ledger(whole);
+  std::uint64_t rebuilds = 0;
+  int at_a_rebuild = 0;
+  for (int k = 0; k < 120; ++k) {
+    advance_along(whole, drive, k, k + 1);
+    if (whole.rebuilds != rebuilds) ++at_a_rebuild;
+    rebuilds = whole.rebuilds;
+    // Continue a copy for some steps, with another number of threads.
+    EngineOptions options = whole.options;
+    options.threads = 1 + k % 3;
+    Simulation copy = start_simulation(whole.state, options, motion_at(drive, (k + 1) * whole.dt));
+    ASSERT_EQ(copy.dt, whole.dt);
+    Simulation original = whole;
+    advance_along(copy, drive, k + 1, k + 4);
+    advance_along(original, drive, k + 1, k + 4);
+    ASSERT_TRUE(bits_of(copy.state) == bits_of(original.state)) << "continued at step " << k;
+  }
+  EXPECT_GT(at_a_rebuild, 1);
+}
+
+TEST(Invariance, Galilean) {
+  const State resting = shaken_packing({2000, 1e8, 1, 0});  // without drag, which knows a frame of rest
+  State moving = resting;
+  const Eigen::Vector3d boost(37, -21, 53);
+  for (std::size_t i = 0; i < moving.packing.size(); ++i) {
+    scene::launch(moving.packing, i, scene::velocity(resting.packing, i) + boost);
+  }
+  Simulation a = scene::start(resting, 0.1), b = scene::start(moving, 0.1);
+  open_ledger(a);
+  open_ledger(b);
+  const int steps = 200;
+  scene::advance_at_rest(a, steps);
+  scene::advance_at_rest(b, steps);
+  double worst = 0;
+  for (std::size_t i = 0; i < resting.packing.size(); ++i) {
+    const Eigen::Vector3d v = scene::velocity(a.state.packing, i);
+    worst = std::max(worst, (scene::velocity(b.state.packing, i) - boost - v).norm());
+  }
+  EXPECT_LE(worst, 1e-9 * kSpeed) << "rounding, amplified by some collisions";
+  EXPECT_NEAR(a.state.sums.E_pot, b.state.sums.E_pot, 1e-10 * a.state.sums.E_pot);
+  EXPECT_NEAR(a.state.ledger.D_contact, b.state.ledger.D_contact, 1e-10 * a.state.ledger.D_contact);
+}
+
+TEST(Invariance, OrderOfTheSpheres) {
+  const State given = shaken_packing();
+  State shuffled = given;
+  const std::size_t n = given.packing.size();
+  Draw draw(67);
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[draw.index(i)]);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t j = order[i];
+    shuffled.packing.id[i] = given.packing.id[j];
+    shuffled.packing.radius[i] = given.packing.radius[j];
+    shuffled.packing.mass[i] = given.packing.mass[j];
+    scene::place(shuffled.packing, i, scene::fraction(given.packing, j));
+    scene::launch(shuffled.packing, i, scene::velocity(given.packing, j));
+  }
+  Simulation a = scene::start(given, 0.1), b = scene::start(shuffled, 0.1);
+  scene::advance_at_rest(a, 100);
+  scene::advance_at_rest(b, 100);
+  double worst = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    worst = std::max(worst, (scene::velocity(b.state.packing, i) - scene::velocity(a.state.packing, order[i])).norm());
+  }
+  EXPECT_LE(worst, 1e-9 * kSpeed);
+}
+
+TEST(Invariance, SkinOfTheList) {
+  const State state = shaken_packing();
+  std::vector<Observation> seen;
+  for (const double skin : {0.02, 0.1, 1.0}) {
+    EngineOptions options;
+    options.skin = skin;
+    Simulation sim = start_simulation(state, options, scene::at_rest(state));
+    scene::advance_at_rest(sim, 100);
+    seen.push_back(observe(sim, scene::at_rest(state), Deviator<double>::Zero()));
+  }
+  for (const Observation& other : seen) {
+    EXPECT_NEAR(other.E_pot, seen[0].E_pot, 1e-9 * seen[0].E_pot);
+    EXPECT_LE((other.stress.tensor - seen[0].stress.tensor).norm(), 1e-9 * seen[0].stress.tensor.norm());
+    EXPECT_EQ(other.C_r, seen[0].C_r);
+  }
+}
+
+}  // namespace
+}  // namespace grainlaw::dem

@@ -1,0 +1,98 @@
+// D19: the neighbour list against all pairs: 0 missed, 0 double, in cells with aspect up to 10, shear up to 0.6 and
+// volume fractions up to 1.2 (the test of 10^6 configurations is in tests/long). Also after the cell has been strained
+// and the spheres have moved as far as allowed_displacement() says, and along a run that shears and collapses.
+
+#include <gtest/gtest.h>
+
+#include "dem/averages.hpp"
+#include "tests/support/dem_families.hpp"
+#include "tests/support/dem_pair_list.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+using scene::Draw;
+using scene::Family;
+using scene::ListFaults;
+
+TEST(PairList, D19RandomConfigurations) {
+  const ListFaults faults = scene::random_list_faults(20000, 41);
+  EXPECT_EQ(faults.missed, 0);
+  EXPECT_EQ(faults.twice, 0);
+  EXPECT_EQ(faults.invented, 0);
+}
+
+class PairListOfFamily : public ::testing::TestWithParam<Family> {};
+
+TEST_P(PairListOfFamily, D19D20LargerPackings) {
+  Draw draw(43);
+  ThreadTeam team(2);
+  for (const double nu : {0.1, 0.7, 1.2}) {
+    for (int k = 0; k < 3; ++k) {
+      Family family = GetParam();
+      family.shape = scene::random_shape(10, 0.6, draw);
+      const State state = scene::state_of_family(family, 300, nu, draw);
+      const double skin = 0.1 * mean_radius(state.packing);
+      const ListFaults faults = scene::compare(build_list(state.packing, skin, team), state.packing);
+      EXPECT_EQ(faults.total(), 0) << "missed " << faults.missed << ", double " << faults.twice << ", invented "
+                                   << faults.invented << " at nu " << nu;
+    }
+  }
+}
+
+TEST_P(PairListOfFamily, SmallSpheresInAGrowingCell) {
+  // In a growing cell the gap to an unlisted neighbour grows least for the smallest spheres.
+  Draw draw(47);
+  ThreadTeam team(1);
+  const State state = scene::state_of_family(GetParam(), 150, 0.5, draw);
+  const Packing& p = state.packing;
+  const Eigen::Matrix3d ref_H = p.H;
+  for (const double skin_fraction : {0.02, 0.1, 0.3}) {
+    const NeighbourList list = build_list(p, skin_fraction * mean_radius(p), team);
+    for (const double stretch : {1.01, 1.1, 1.3}) {
+      State moved = state;
+      moved.packing.H = stretch * ref_H;
+      const double allowed = allowed_displacement(list, ref_H, moved.packing.H);
+      ASSERT_GT(allowed, 0);
+      const Eigen::Matrix3d inverse =
+          moved.packing.H.triangularView<Eigen::Upper>().solve(Eigen::Matrix3d::Identity());
+      for (int k = 0; k < 5; ++k) {
+        for (std::size_t i = 0; i < p.size(); ++i) {
+          const Eigen::Vector3d step = 0.999 * allowed * draw.vector(-1, 1).normalized();
+          scene::place(moved.packing, i, scene::fraction(p, i) + inverse * step);
+        }
+        ASSERT_EQ(scene::contacts_missed(list, moved.packing), 0) << "stretch " << stretch << ", skin " << skin_fraction;
+      }
+    }
+  }
+}
+
+TEST_P(PairListOfFamily, D19AlongARunThatShearsAndCollapses) {
+  // Volume fraction 0.3 to 1.2 with 60 % shear; the engine's contacts are counted against all pairs every 50 steps.
+  Draw draw(53);
+  State state = scene::state_of_family(GetParam(), 40, 0.3, draw, {2000, 1e8, 0.1, 0});
+  scene::random_velocities(state.packing, 5, draw);
+  const Eigen::Matrix3d H_0 = state.packing.H;
+  Simulation sim = scene::start(state, 0.1);
+  const int steps = 4000;
+  const double shrink = std::log(4.0) / 3 / steps, shear = 0.6 / steps;
+  const auto motion = [&](double k) {
+    Eigen::Matrix3d F = Eigen::Matrix3d::Identity(), L = Eigen::Matrix3d::Zero();
+    F(0, 2) = shear * k;
+    L(0, 2) = shear / sim.dt;
+    L.diagonal().setConstant(-shrink / sim.dt);
+    return CellMotion{std::exp(-shrink * k) * F * H_0, L, Transport::homogeneous};
+  };
+  for (int k = 0; k < steps; ++k) {
+    advance(sim, motion(k + 0.5), motion(k + 1));
+    if (k % 50 != 0) continue;
+    ASSERT_EQ(scene::contacts_missed(sim.list, sim.state.packing), 0) << "step " << k;
+  }
+  EXPECT_NEAR(volume_fraction(sim.state.packing), 1.2, 1e-9);
+  EXPECT_GT(sim.rebuilds, 3U);
+}
+
+INSTANTIATE_TEST_SUITE_P(D20, PairListOfFamily, ::testing::ValuesIn(scene::families()), scene::name_of_family);
+
+}  // namespace
+}  // namespace grainlaw::dem
