@@ -1,0 +1,121 @@
+#include "predict/compare.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "model/error.hpp"
+#include "tests/support/law_path.hpp"
+
+namespace grainlaw::predict {
+namespace {
+
+using testing::leg;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// A D2 test with rows at shear_path 0, 0.005, 0.01, 0.02, 0.04 whose observations are what is predicted there.
+struct Scene {
+  TestRecord test;
+  Prediction prediction;
+};
+
+Scene scene(Mode mode = Mode::D2) {
+  Scene s;
+  s.test.name = "made-up";
+  s.test.path = {0.74, Branch::unloading, {leg(mode, 0.04)}};
+  const auto segments = resolve(s.test.path);
+  const double length = segments[0].length;
+  const LawParameters<double> p = published_parameters();
+  s.prediction = predict(Model::reduced, p, Coupling::single, segments, state_from_law(p, 0.74),
+                         {{0, 0.0}, {0, length / 8}, {0, length / 4}, {0, length / 2}, {0, length}}, {}, {}, {});
+  for (const PredictedRow& row : s.prediction.rows) {
+    Observation o;
+    o.strain = row.strain;
+    o.P_star = row.state.P;
+    o.s_par = row.s_par;
+    o.F_par = row.F_par;
+    s.test.rows.push_back(o);
+  }
+  return s;
+}
+
+const QuantityComparison& quantity(const Comparison& comparison, const std::string& name) {
+  for (const auto& q : comparison.quantities) {
+    if (q.quantity == name) return q;
+  }
+  throw Error("no " + name);
+}
+
+TEST(Compare, EqualSeriesDoNotDiffer) {
+  const Scene s = scene();
+  const Comparison comparison = compare(s.prediction, s.test);
+  EXPECT_EQ(comparison.test, "made-up");
+  ASSERT_EQ(comparison.quantities.size(), 3U);
+  for (const auto& q : comparison.quantities) {
+    EXPECT_EQ(q.rows, 3) << q.quantity << ": rows from shear_path = 0.01 on";
+    EXPECT_EQ(q.bias, 0);
+    EXPECT_EQ(q.rms, 0);
+    EXPECT_EQ(q.normalised_rms, 0);
+    EXPECT_EQ(q.largest, 0);
+  }
+}
+
+TEST(Compare, BiasAndRmsAreThoseOfTheDefinition) {
+  Scene s = scene();
+  const double shift[] = {100, 100, 0.01, -0.04, 0.03};  // prediction - DEM; the first two rows do not count
+  for (std::size_t i = 0; i < 5; ++i) s.test.rows[i].s_par = s.prediction.rows[i].s_par - shift[i];
+  const auto q = quantity(compare(s.prediction, s.test), "s_par");
+  EXPECT_EQ(q.rows, 3);
+  EXPECT_NEAR(q.bias, 0.0, 1e-16);
+  EXPECT_NEAR(q.rms, std::sqrt((1e-4 + 16e-4 + 9e-4) / 3), 1e-16);
+  double largest_observed = 0;
+  for (std::size_t i = 2; i < 5; ++i) largest_observed = std::max(largest_observed, std::abs(s.test.rows[i].s_par));
+  EXPECT_NEAR(q.normalised_rms, q.rms / largest_observed, 1e-15);
+  EXPECT_NEAR(q.largest, -0.04, 1e-16);
+  EXPECT_NEAR(q.largest_at_eps_dev, 0.02, 1e-15);
+  EXPECT_EQ(q.largest_at_nu, 0.74);
+}
+
+TEST(Compare, IsotropicPathsCountEveryRow) {
+  const Scene s = scene(Mode::ISO);
+  const Comparison comparison = compare(s.prediction, s.test);
+  EXPECT_EQ(quantity(comparison, "P_star").rows, 5);
+  for (const char* name : {"s_par", "F_par"}) {
+    EXPECT_EQ(quantity(comparison, name).rows, 0) << "undefined without shear";
+    EXPECT_TRUE(std::isnan(quantity(comparison, name).bias));
+    EXPECT_TRUE(std::isnan(quantity(comparison, name).normalised_rms));
+    EXPECT_TRUE(std::isnan(quantity(comparison, name).largest_at_nu));
+  }
+}
+
+TEST(Compare, PredictionMayEndEarly) {
+  Scene s = scene();
+  s.prediction.rows.resize(4);
+  EXPECT_EQ(quantity(compare(s.prediction, s.test), "P_star").rows, 2);
+  s.prediction.rows.clear();
+  EXPECT_EQ(quantity(compare(s.prediction, s.test), "P_star").rows, 0);
+}
+
+TEST(Compare, UndefinedObservationsDoNotCount) {
+  Scene s = scene();
+  s.test.rows[3].F_par = kNaN;
+  EXPECT_EQ(quantity(compare(s.prediction, s.test), "F_par").rows, 2);
+  EXPECT_EQ(quantity(compare(s.prediction, s.test), "s_par").rows, 3);
+}
+
+TEST(Compare, OtherStrainsAreRefused) {
+  Scene s = scene();
+  s.test.rows[2].strain.tensor(0, 0) += 1e-6;
+  EXPECT_THROW(compare(s.prediction, s.test), InvalidInput);
+  s = scene();
+  s.test.rows.pop_back();
+  EXPECT_THROW(compare(s.prediction, s.test), InvalidInput) << "more predicted than observed";
+  s = scene();
+  s.test.rows[1].strain.tensor(0, 0) = kNaN;
+  EXPECT_THROW(compare(s.prediction, s.test), InvalidInput);
+}
+
+}  // namespace
+}  // namespace grainlaw::predict
