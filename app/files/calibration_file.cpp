@@ -124,6 +124,7 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
   for (const fit::Stage& stage : calibration.stages) stages.push_back(stage_to_json(stage));
   OrderedJson& shear = document["shear"] = OrderedJson::array();
   for (const fit::ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
+  document["unused_tests"] = calibration.unused_tests;
   document["provenance"] = provenance;
   write_json(file, document);
 }
@@ -133,6 +134,7 @@ void read_calibration(const std::filesystem::path& file, fit::Calibration& calib
   try {
     for (const Json& stage : document.at("stages")) calibration.stages.push_back(stage_from_json(stage));
     for (const Json& shear : document.at("shear")) calibration.shear.push_back(shear_from_json(shear));
+    calibration.unused_tests = document.at("unused_tests").get<std::vector<std::string>>();
   } catch (const Json::exception& error) {
     throw InvalidInput(fmt::format("{}: is no calibration.json of this version: {}; run grainlaw calibrate again",
                                    one_line(file.string(), 200), one_line(error.what(), 200)));

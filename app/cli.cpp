@@ -1,0 +1,151 @@
+#include "app/cli.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <new>
+#include <thread>
+
+#include "app/commands/calibrate.hpp"
+#include "app/commands/predict.hpp"
+#include "app/commands/simulate.hpp"
+#include "app/exit_code.hpp"
+#include "app/interrupt.hpp"
+#include "app/one_line.hpp"
+#include "app/report/report.hpp"
+#include "app/session.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 ok, 1 failure, 2 invalid input or usage, 3 did not converge, 130 interrupted.\n"
+    "Results go to standard output, progress and messages to standard error. Files: docs/formats.md";
+
+struct Common {
+  int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool json = false;
+  bool quiet = false;
+};
+
+/// What the user asked for, set by the callback of the chosen command.
+using Task = std::function<ExitCode(Session&)>;
+
+void add_common(CLI::App& command, Common& common) {
+  command.add_option("--threads", common.threads, "threads of all runs together; results do not depend on it")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command.add_flag("--json", common.json, "result on standard output as JSON");
+  command.add_flag("--quiet", common.quiet, "no progress, no warnings");
+  command.footer(kExitCodes);
+}
+
+void add_simulate(CLI::App& app, Common& common, Task& task) {
+  CLI::App* command = app.add_subcommand("simulate", "one packing or one element test in the DEM engine");
+  auto options = std::make_shared<SimulateOptions>();
+  command->add_option("TEST", options->test, "TEST.json")->required();
+  command->add_option("-o,--output", options->output, "folder for series, states and summary")->required();
+  add_common(*command, common);
+  command->callback([options, &task] { task = [options](Session& session) { return simulate(*options, session); }; });
+}
+
+void add_calibrate(CLI::App& app, Common& common, Task& task) {
+  CLI::App* command = app.add_subcommand("calibrate", "packings and element tests of a spec, then the law's parameters");
+  auto options = std::make_shared<CalibrateOptions>();
+  command->add_option("SPEC", options->spec, "SPEC.json; may be left out with --dataset");
+  command->add_option("-o,--output", options->output, "folder of the calibration")->required();
+  command->add_option("--dataset", options->dataset, "fit this data set without running DEM");
+  command->add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Coupling>{{"energy", Coupling::energy}, {"single", Coupling::single}}));
+  add_common(*command, common);
+  command->callback([options, &task] { task = [options](Session& session) { return calibrate(*options, session); }; });
+}
+
+void add_predict(CLI::App& app, Common& common, Task& task) {
+  CLI::App* command = app.add_subcommand("predict", "the calibrated law along a strain path, and DEM of the same path");
+  auto options = std::make_shared<PredictOptions>();
+  command->add_option("PARAMETERS", options->parameters, "parameters.json of a calibration")->required();
+  command->add_option("PATH", options->path, "PATH.json")->required();
+  command->add_option("-o,--output", options->output, "folder of the prediction")->required();
+  command->add_flag("--dem", options->dem, "run the path in the engine on new packings and compare");
+  command->add_option("--model", options->model, "reduced or evolution; default: both")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, predict::Model>{{"reduced", predict::Model::reduced}, {"evolution", predict::Model::evolution}}));
+  command->add_option("--initial", options->initial, "start from the law or from measured values; default: law, with --dem both")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Initial>{{"law", Initial::law}, {"measured", Initial::measured}}));
+  command->add_option("--seeds", options->seeds, "seeds of the new packings, e.g. 11,12")->delimiter(',');
+  command->add_option("--spec", options->spec, "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
+  command->add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS");
+  add_common(*command, common);
+  command->callback([options, &task] { task = [options](Session& session) { return run_prediction(*options, session); }; });
+}
+
+void add_report(CLI::App& app, Common& common, Task& task) {
+  CLI::App* command = app.add_subcommand("report", "one HTML page about a calibration and its predictions");
+  auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>();
+  command->add_option("DIR", *folder, "folder of a calibration")->required();
+  command->add_option("-o,--output", *html, "file of the page, e.g. report.html")->required();
+  add_common(*command, common);
+  command->callback([folder, html, &task] {
+    task = [folder, html](Session& session) {
+      write_report(*folder, *html);
+      print_result(session.json ? json_text({{"report", html->string()}}) : fmt::format("{}\n{}\n", summary_table(*folder), html->string()));
+      return ExitCode::ok;
+    };
+  });
+}
+
+int fail(ExitCode code, const std::string& message) {
+  fmt::print(stderr, "grainlaw: {}\n", one_line(message));
+  return static_cast<int>(code);
+}
+
+std::string command_line(int argc, char** argv) {
+  std::string text = "grainlaw";
+  for (int i = 1; i < argc; ++i) text += fmt::format(" {}", one_line(argv[i]));
+  return text;
+}
+
+int perform(const Task& task, const Common& common, const std::string& command) {
+  try {
+    const InterruptGuard interrupt;
+    ProgressPrinter progress(stderr, common.quiet);
+    Session session{command, common.threads, common.json, interrupt.token(), progress, {}};
+    return static_cast<int>(task(session));
+  } catch (const InvalidInput& error) {
+    return fail(ExitCode::invalid_input, error.what());
+  } catch (const NotConverged& error) {
+    return fail(ExitCode::not_converged, error.what());
+  } catch (const Interrupted& error) {
+    return fail(ExitCode::interrupted, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::failure, "out of memory; use fewer particles or threads");
+  } catch (const std::exception& error) {
+    return fail(ExitCode::failure, error.what());
+  }
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  CLI::App app("grainlaw: from frictionless grains to an incremental constitutive law and back", "grainlaw");
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+  Common common;
+  Task task;
+  for (const auto add : {add_simulate, add_calibrate, add_predict, add_report}) add(app, common, task);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wish) {  // --help, --version
+    return app.exit(wish);
+  } catch (const CLI::ParseError& error) {
+    return fail(ExitCode::invalid_input, fmt::format("{}; see grainlaw --help", error.what()));
+  } catch (const std::exception& error) {
+    return fail(ExitCode::invalid_input, error.what());
+  }
+  return perform(task, common, command_line(argc, argv));
+}
+
+}  // namespace grainlaw::app

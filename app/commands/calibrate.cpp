@@ -1,0 +1,139 @@
+#include "app/commands/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/atomic_write.hpp"
+#include "app/dataset_runs.hpp"
+#include "app/files/calibration_file.hpp"
+#include "app/files/dataset.hpp"
+#include "app/files/parameters_file.hpp"
+#include "app/files/spec_file.hpp"
+#include "app/output_folder.hpp"
+#include "app/report/report.hpp"
+#include "fit/calibrate.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Copies a data set of elsewhere into the calibration's folder, so that the folder is complete.
+Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (fs::equivalent(from, to, error)) return dataset;
+  for (const DatasetTest& test : dataset.tests) copy_atomically(from / (test.record.name + ".csv"), to / (test.record.name + ".csv"));
+  copy_atomically(from / "dataset.json", to / "dataset.json");
+  return read_dataset(to);
+}
+
+/// The folder itself, or its dataset/ when a calibration's folder was given.
+fs::path dataset_folder(const fs::path& given) {
+  if (fs::exists(given / "dataset.json")) return given;
+  if (fs::exists(given / "dataset" / "dataset.json")) return given / "dataset";
+  throw InvalidInput(fmt::format("{}: holds no dataset.json; give the folder of a data set", given.string()));
+}
+
+std::vector<TestRecord> calibration_tests(const Dataset& dataset) {
+  std::vector<TestRecord> tests;
+  for (const DatasetTest& test : dataset.tests) {
+    if (test.record.role == Role::calibration) tests.push_back(test.record);
+  }
+  return tests;
+}
+
+/// Refuses before anything runs what no fit can be made of.
+void check_tests(const std::vector<TestRecord>& tests, const std::string& name) {
+  const auto missing = [&](const char* what, const char* mode) {
+    throw InvalidInput(fmt::format("{}: tests: none of role calibration is {}; add {{\"mode\": \"{}\", \"role\": \"calibration\"}}", name, what, mode));
+  };
+  if (std::none_of(tests.begin(), tests.end(), is_isotropic_unloading)) missing("an isotropic unloading", "ISO");
+  if (std::none_of(tests.begin(), tests.end(), is_pure_shear)) missing("a shear at constant volume", "D2");
+}
+
+std::vector<TestRecord> calibration_tests(const std::vector<PlannedTest>& planned) {
+  std::vector<TestRecord> tests;
+  for (const PlannedTest& test : planned) {
+    if (test.role == Role::calibration) tests.push_back({test.name, test.role, test.path, {}, {}});
+  }
+  return tests;
+}
+
+void log_warnings(const Dataset& dataset, Session& session) {
+  for (const DatasetTest& test : dataset.tests) {
+    for (const std::string& warning : test.warnings) session.progress.log(fmt::format("warning: {}: {}", test.record.name, warning));
+  }
+}
+
+std::string summary_of(const fs::path& output, const Dataset& dataset, bool converged, const RunCounts& counts, const Session& session) {
+  const std::string parameters = (output / "parameters.json").string();
+  const double seconds = session.stopwatch.seconds(), memory = peak_memory_megabytes();
+  if (!session.json) {
+    return fmt::format("{}\n{} runs ({} found finished), {} tests, {:.1f} s, {:.0f} MB\n{}\n", summary_table(output), counts.runs,
+                       counts.found, dataset.tests.size(), seconds, memory, parameters);
+  }
+  return json_text({{"folder", output.string()},
+                    {"parameters", parameters},
+                    {"converged", converged},
+                    {"tests", dataset.tests.size()},
+                    {"runs", counts.runs},
+                    {"runs_found", counts.found},
+                    {"dataset_digest", dataset.digest},
+                    {"seconds", seconds},
+                    {"peak_memory_MB", memory}});
+}
+
+ExitCode fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output, const RunCounts& counts, Session& session) {
+  session.progress.begin({1});
+  const fit::Calibration calibration =
+      fit::calibrate(calibration_tests(dataset), options, session.progress.control(0, "fit", session.stop));
+  session.progress.end();
+  const OrderedJson origin = provenance(session.command, session.threads, session.stopwatch);
+  write_calibration(output / "calibration.json", calibration, options, dataset.digest, origin);
+  write_parameters(output / "parameters.json", {calibration, dataset.digest, Json(origin)});
+  for (const fit::Stage& stage : calibration.stages) {
+    if (!stage.converged) session.progress.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
+  }
+  print_result(summary_of(output, dataset, calibration.converged, counts, session));
+  return calibration.converged ? ExitCode::ok : ExitCode::not_converged;
+}
+
+}  // namespace
+
+ExitCode calibrate(const CalibrateOptions& options, Session& session) {
+  if (options.spec.empty() && options.dataset.empty()) {
+    throw InvalidInput("calibrate: misses SPEC.json; give it, or --dataset with the folder of a data set");
+  }
+  std::optional<Spec> spec;
+  std::optional<Dataset> given;
+  fs::path from;
+  if (!options.dataset.empty()) {
+    from = dataset_folder(options.dataset);
+    given = read_dataset(from);
+    check_tests(calibration_tests(*given), from.string());
+  }
+  if (!options.spec.empty()) {
+    spec = read_spec(options.spec);
+  } else if (!given->spec.is_null()) {
+    spec = spec_from_json(given->spec, (from / "dataset.json").string() + ": spec");
+  }
+  if (!given) check_tests(calibration_tests(plan(*spec)), options.spec.string());
+  fit::CalibrationOptions fit_options;
+  fit_options.threads = session.threads;
+  fit_options.coupling = options.coupling.value_or(spec ? spec->coupling : Coupling::energy);
+  if (spec) spec->coupling = fit_options.coupling;
+
+  make_output_folder(options.output);
+  const fs::path dataset_output = make_subfolder(options.output, "dataset");
+  if (spec) write_json(options.output / "spec.resolved.json", spec_to_json(*spec));
+  RunCounts counts;
+  const Dataset dataset = given ? adopt(*given, from, dataset_output)
+                                : run_planned(plan(*spec), Json(spec_to_json(*spec)), dataset_output,
+                                              RunStore(options.output, "runs"), session, counts);
+  log_warnings(dataset, session);
+  return fit_and_save(dataset, fit_options, options.output, counts, session);
+}
+
+}  // namespace grainlaw::app

@@ -1,0 +1,162 @@
+#include "app/commands/predict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "app/digest.hpp"
+#include "app/files/parameters_file.hpp"
+#include "app/files/path_file.hpp"
+#include "app/new_packings.hpp"
+#include "app/output_folder.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+namespace fs = std::filesystem;
+using predict::Model;
+
+constexpr int kPointsPerSegment = 200;  // of a curve that no DEM run dictates
+
+std::vector<Model> models_of(const PredictOptions& options) {
+  return options.model ? std::vector{*options.model} : std::vector{Model::reduced, Model::evolution};
+}
+
+std::vector<Initial> initials_of(const PredictOptions& options) {
+  if (options.initial) return {*options.initial};
+  return options.dem ? std::vector{Initial::law, Initial::measured} : std::vector{Initial::law};
+}
+
+/// The law with everything that a curve needs besides its start and its points.
+struct Law {
+  const fit::Calibration& calibration;
+  std::vector<StraightSegment> segments;
+  predict::ValidRange range;
+  RunControl control;
+
+  predict::Prediction along(Model model, const LawState<double>& start, const std::vector<predict::OutputPoint>& points) const {
+    return predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points, predict::Tolerances{}, range, control);
+  }
+};
+
+/// Curves at equal steps, from the law's own start.
+void add_free_curves(const Law& law, const PredictOptions& options, PredictionFolder& content) {
+  const auto points = predict::uniform_points(law.segments, kPointsPerSegment);
+  const auto start = predict::state_from_law(law.calibration.parameters, content.path.nu);
+  for (const Model model : models_of(options)) {
+    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", predict::to_string(model)), law.along(model, start, points)});
+  }
+}
+
+/// Curves at the rows of each DEM run, and how far they are from it.
+void add_compared_curves(const Law& law, const PredictOptions& options, PredictionFolder& content) {
+  for (const DatasetTest& test : content.dem->tests) {
+    const auto points = predict::points_of(test.record);
+    const std::uint64_t seed = test.record.packing.seed;
+    for (const Model model : models_of(options)) {
+      for (const Initial initial : initials_of(options)) {
+        const auto start = initial == Initial::law ? predict::state_from_law(law.calibration.parameters, content.path.nu)
+                                                   : predict::state_from_row(test.record.rows.front());
+        PredictedCurve curve{model, initial, seed, fmt::format("{}-{}-s{}.csv", predict::to_string(model), to_string(initial), seed),
+                             law.along(model, start, points)};
+        content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
+        content.curves.push_back(std::move(curve));
+      }
+    }
+  }
+  for (const CurveComparison& mean : mean_over_seeds(content.comparisons)) content.comparisons.push_back(mean);
+}
+
+/// The runs of the path on new packings.
+Dataset run_dem(const PredictOptions& options, const Spec& spec, const PathFile& path, Session& session) {
+  const std::string name = options.path.string();
+  const auto tests = plan(spec, path, new_seeds(spec, path, options.seeds, name), name);
+  const fs::path parent = !options.store.empty() ? options.store
+                          : options.parameters.has_parent_path() ? options.parameters.parent_path() : fs::path(".");
+  make_output_folder(parent);
+  RunCounts counts;
+  return run_planned(tests, Json(spec_to_json(spec)), make_subfolder(options.output, "dem"), RunStore(parent, "runs"), session, counts);
+}
+
+Spec spec_beside(const PredictOptions& options) {
+  const fs::path file = options.spec.empty() ? options.parameters.parent_path() / "spec.resolved.json" : options.spec;
+  if (options.spec.empty() && !fs::exists(file)) {
+    throw InvalidInput(fmt::format("{}: not found; --dem prepares packings by the calibration's spec, give it with --spec", file.string()));
+  }
+  return read_spec(file);
+}
+
+OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) {
+  OrderedJson summary{{"folder", output.string()}};
+  OrderedJson& comparisons = summary["comparisons"] = OrderedJson::array();
+  for (const CurveComparison& entry : content.comparisons) {
+    if (entry.seed) continue;
+    OrderedJson object{{"model", predict::to_string(entry.model)}, {"initial", to_string(entry.initial)}};
+    for (const auto& q : entry.comparison.quantities) {
+      object[q.quantity] = {{"bias", number_or_null(q.bias)}, {"normalised_rms", number_or_null(q.normalised_rms)}};
+    }
+    comparisons.push_back(object);
+  }
+  return summary;
+}
+
+std::string text_of(const PredictionFolder& content, const fs::path& output) {
+  std::string text;
+  for (const PredictedCurve& curve : content.curves) {
+    if (curve.seed || curve.prediction.rows.empty()) continue;
+    const predict::PredictedRow& end = curve.prediction.rows.back();
+    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n", predict::to_string(curve.model), to_string(curve.initial),
+                        end.nu, end.state.P, end.s_par, end.F_par, curve.prediction.unjammed ? "  (unjammed)" : "");
+  }
+  for (const CurveComparison& entry : content.comparisons) {
+    if (entry.seed) continue;
+    text += fmt::format("{:<9} {:<8}", predict::to_string(entry.model), to_string(entry.initial));
+    for (const auto& q : entry.comparison.quantities) text += fmt::format("  {} bias {:+.4f} rms {:.1f} %", q.quantity, q.bias, 100 * q.normalised_rms);
+    text += "\n";
+  }
+  return text + (output / "prediction.json").string() + "\n";
+}
+
+}  // namespace
+
+ExitCode run_prediction(const PredictOptions& options, Session& session) {
+  if (options.initial == Initial::measured && !options.dem) {
+    throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem too");
+  }
+  const ParametersFile parameters = read_parameters(options.parameters);
+  for (const Model model : models_of(options)) require_parameters(parameters, model, options.parameters.string());
+  const PathFile path = read_path(options.path);
+  const fit::Calibration& calibration = parameters.calibration;
+  const Law law{calibration, resolve(path.path), {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max}, {{}, session.stop}};
+  predict::state_from_law(calibration.parameters, path.path.nu);  // refuses a start below jamming before anything is written
+  std::optional<Spec> spec;
+  if (options.dem) {
+    spec = spec_beside(options);
+    plan(*spec, path, new_seeds(*spec, path, options.seeds, options.path.string()), options.path.string());
+  }
+
+  make_output_folder(options.output);
+  PredictionFolder content;
+  content.name = options.output.filename().string();
+  content.path = path.path;
+  content.parameters = {{"file", options.parameters.string()}, {"sha256", sha256_of_file(options.parameters)}, {"dataset_digest", parameters.dataset_digest}};
+  if (options.dem) content.dem = run_dem(options, *spec, path, session);
+  if (options.initial != Initial::measured) add_free_curves(law, options, content);
+  if (content.dem) add_compared_curves(law, options, content);
+  content.provenance = Json(provenance(session.command, session.threads, session.stopwatch));
+  write_prediction(options.output, content);
+
+  std::set<std::string> warned;
+  if (!calibration.converged) session.progress.log("warning: the calibration did not converge");
+  for (const PredictedCurve& curve : content.curves) {
+    for (const std::string& warning : curve.prediction.warnings) {
+      if (warned.insert(warning).second) session.progress.log("warning: " + warning);
+    }
+  }
+  print_result(session.json ? json_text(summary_of(content, options.output)) : text_of(content, options.output));
+  return ExitCode::ok;
+}
+
+}  // namespace grainlaw::app

@@ -1,0 +1,23 @@
+#pragma once
+// PATH: the strain path of a prediction, with the seeds of the packings that --dem runs it on.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "app/files/json_document.hpp"
+#include "model/path.hpp"
+
+namespace grainlaw::app {
+
+struct PathFile {
+  Path path;
+  std::vector<std::uint64_t> seeds;  ///< empty: not given
+  std::optional<int> rows;           ///< rows of each segment
+};
+
+/// Throws InvalidInput naming file, key, reason and remedy.
+PathFile read_path(const std::filesystem::path& file);
+
+}  // namespace grainlaw::app

@@ -1,0 +1,58 @@
+#pragma once
+// Progress of a list of jobs on stderr: one line that is rewritten on a terminal, a line every few seconds elsewhere,
+// nothing when quiet. No colours.
+
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "model/run_control.hpp"
+
+namespace grainlaw::app {
+
+class ProgressPrinter {
+ public:
+  ProgressPrinter(std::FILE* out, bool quiet);
+
+  /// Starts a new list: `work` is what each job is expected to do, e.g. particle-steps; 0 for jobs that are done already.
+  void begin(const std::vector<double>& work);
+
+  /// What the job with this index in the list is to report to.
+  RunControl control(std::size_t job, std::string name, std::stop_token stop);
+  void finished(std::size_t job);
+
+  /// Ends the list and clears the line.
+  void end();
+
+  /// A line of its own.
+  void log(const std::string& text);
+
+ private:
+  struct Job {
+    std::string name;
+    double expected = 0;     // work of the whole job
+    double before = 0;       // work of its stages that are over
+    double current = 0;      // work of the current stage
+    std::string stage;
+    bool running = false, done = false;
+  };
+
+  void report(std::size_t job, const Progress& progress);
+  void print();
+  void clear_line();
+  std::string status() const;
+
+  std::FILE* out_;
+  bool quiet_, terminal_, line_shown_ = false;
+  std::mutex mutex_;
+  std::vector<Job> jobs_;
+  std::string unit_;
+  std::chrono::steady_clock::time_point began_, printed_;
+};
+
+/// "0:42", "1:02:03".
+std::string clock_text(double seconds);
+
+}  // namespace grainlaw::app

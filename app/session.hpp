@@ -1,0 +1,24 @@
+#pragma once
+// What every command gets besides its own options.
+
+#include <stop_token>
+#include <string>
+
+#include "app/progress_printer.hpp"
+#include "app/provenance.hpp"
+
+namespace grainlaw::app {
+
+struct Session {
+  std::string command;        ///< command line as typed, for the provenance
+  int threads = 1;            ///< threads of all runs together
+  bool json = false;          ///< result on stdout as JSON
+  std::stop_token stop;       ///< the user wishes to end
+  ProgressPrinter& progress;  ///< stderr
+  Stopwatch stopwatch;        ///< started with the command
+};
+
+/// Result of a command on stdout. Throws Error when it cannot be written.
+void print_result(const std::string& text);
+
+}  // namespace grainlaw::app
