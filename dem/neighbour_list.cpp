@@ -136,7 +136,10 @@ void find_entries(const Packing& p, const Bins& bins, double skin, std::size_t i
 
 void wrap(Packing& p) {
   for (auto* s : {&p.sx, &p.sy, &p.sz}) {
-    for (double& fraction : *s) fraction -= std::floor(fraction);
+    for (double& fraction : *s) {
+      fraction -= std::floor(fraction);
+      if (fraction >= 1) fraction = 0;  // rounding of a fraction just below 0
+    }
   }
 }
 
