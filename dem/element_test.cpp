@@ -14,7 +14,6 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double kMaxSteps = 1e12;            // per segment: years of work; beyond it a rate was mistyped
-constexpr double kMaxInertialNumber = 1e-3;   // hard case D25: above it the flow is no longer quasi-static
 constexpr double kRounding = 1e-11;           // of the energies' sum: what is lost in adding it up over a run
 
 void check_options(const State& start, const ElementTestOptions& options) {
@@ -150,7 +149,7 @@ class TestRun {
 
   ElementTest finish() {
     imbalance_.report(result_.warnings, "energy residual", options_.warn_energy_residual, result_.rows.size());
-    rate_.report(result_.warnings, "inertial number", kMaxInertialNumber, result_.rows.size());
+    rate_.report(result_.warnings, "inertial number", options_.warn_inertial_number, result_.rows.size());
     result_.end = std::move(sim_.state);
     return std::move(result_);
   }
@@ -175,7 +174,7 @@ class TestRun {
     result_.rows.push_back(row);
     const double residual = judge_.residual(row, sim_.state.ledger);
     imbalance_.note(residual, options_.warn_energy_residual, row.nu);
-    rate_.note(row.inertial_number, kMaxInertialNumber, row.nu);
+    rate_.note(row.inertial_number, options_.warn_inertial_number, row.nu);
     if (!(residual <= options_.stop_energy_residual)) {
       throw Error(fmt::format(
           "energy balance: residual {:.3g} at row {} (segment {}, nu = {:.6g}, step {}) is beyond {}; the results would be "

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -70,17 +71,25 @@ std::vector<double> crossing_order(std::vector<double> densities, Branch branch)
   return densities;
 }
 
+ElementTestOptions branch_options(const PreparationOptions& options) {
+  ElementTestOptions branch;
+  branch.engine = options.engine;
+  branch.drive = options.drive;
+  branch.rows = options.rows;
+  return branch;
+}
+
+ElementTestOptions gas_options(const PreparationOptions& options) {
+  ElementTestOptions gas = branch_options(options);
+  gas.drive.strain_rate *= options.gas_compression_factor;
+  gas.warn_inertial_number = std::numeric_limits<double>::infinity();  // a gas is not meant to be quasi-static
+  return gas;
+}
+
 /// One isotropic run to `to_nu`; warnings go to the sink.
-ElementTest drive_to(const State& from, double to_nu, const PreparationOptions& options, double rate_factor,
-                     const std::string& stage, const PreparationSink& sink, const RunControl& control,
-                     const StepObserver& on_step) {
-  ElementTestOptions test_options;
-  test_options.engine = options.engine;
-  test_options.drive = options.drive;
-  test_options.drive.strain_rate *= rate_factor;
-  test_options.rows = options.rows;
-  ElementTest test =
-      run_element_test(from, isotropic_segment(from, to_nu), test_options, with_stage(control, stage), on_step);
+ElementTest drive_to(const State& from, double to_nu, const ElementTestOptions& options, const std::string& stage,
+                     const PreparationSink& sink, const RunControl& control, const StepObserver& on_step) {
+  ElementTest test = run_element_test(from, isotropic_segment(from, to_nu), options, with_stage(control, stage), on_step);
   if (sink.warn) {
     for (const std::string& warning : test.warnings) sink.warn(stage + ": " + warning);
   }
@@ -104,7 +113,7 @@ State run_branch(Branch branch, const State& from, double to_nu, const std::vect
     // e of an isotropic segment is |ln(nu/nu_0)|/3; rounding must not lose a density at its end
     while (next < densities.size() && e >= std::abs(std::log(densities[next] / nu_0)) / 3 - 1e-13) keep_state(sim.state);
   };
-  ElementTest test = drive_to(from, to_nu, options, 1, to_string(branch), sink, control, on_step);
+  ElementTest test = drive_to(from, to_nu, branch_options(options), to_string(branch), sink, control, on_step);
   sink.series(branch, test.rows);
   return std::move(test.end);
 }
@@ -114,8 +123,7 @@ State run_branch(Branch branch, const State& from, double to_nu, const std::vect
 void prepare(const PreparationOptions& options, const PreparationSink& sink, const RunControl& control) {
   check_options(options, sink);
   const State gas = random_gas(options.packing, options.nu_gas, options.engine, with_stage(control, "random gas"));
-  State start = drive_to(gas, options.nu_start, options, options.gas_compression_factor, "gas compression", sink, control,
-                         {}).end;
+  State start = drive_to(gas, options.nu_start, gas_options(options), "gas compression", sink, control, {}).end;
   scale_to_volume_fraction(start.packing, options.nu_start);
   relax(start, options.engine, options.relax, with_stage(control, "relaxation of the gas"));
   const State dense =
