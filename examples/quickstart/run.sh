@@ -24,14 +24,10 @@ grainlaw() {
 inputs=examples/quickstart
 grainlaw calibrate "$inputs/spec.json" -o "$out"
 for path in "$inputs"/uniaxial-*.json; do
-  name=$(basename "$path" .json)
-  for model in reduced evolution; do
-    grainlaw predict "$out/parameters.json" "$path" --model "$model" --dem \
-      -o "$out/predictions/$name-$model"
-  done
+  grainlaw predict "$out/parameters.json" "$path" --dem -o "$out/predictions/$(basename "$path" .json)"
 done
-grainlaw report "$out" -o "$out/report.html"
+summary=$(grainlaw report "$out" -o "$out/report.html")
 
 awk '{ seconds += $1; if ($2 > peak) peak = $2 }
-     END { printf "\nWhole chain after the build: %.0f s, peak memory %.0f MB\n", seconds, peak / 1024 }' "$cost"
-echo "Report: $out/report.html"
+     END { printf "\nWhole chain after the build: %.0f s, peak memory %.0f MB\n\n", seconds, peak / 1024 }' "$cost"
+printf '%s\n' "$summary"
