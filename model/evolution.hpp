@@ -42,32 +42,52 @@ inline LawDirection law_direction(const StrainRate& rate) {
   return direction;
 }
 
-/// Right-hand side of Eq. (16): d(state)/de at volume fraction `nu`. Finite for P > 0 and finite arguments.
+/// What the right-hand side takes from the volume fraction alone; worth keeping where that does not change.
 template <class T>
-LawState<T> evolution_rate(const LawParameters<T>& p, Coupling coupling, const LawState<T>& y, double nu,
-                           const LawDirection& direction) {
-  const T B = p.isotropic.B_star(nu);
-  const T s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
-  const T beta_s = p.stress_rate.value(nu, p.shear_nu_c);
-  const T F_max = p.fabric_max.value(nu, p.shear_nu_c);
-  const T beta_F = p.fabric_rate.value(nu, p.shear_nu_c);
+struct LawModuli {
+  T B{};       ///< bulk modulus B* [-]
+  T s_max{};   ///< limit of the stress ratio [-]
+  T beta_s{};  ///< its growth rate [-]
+  T F_max{};   ///< limit of the deviatoric fabric [-]
+  T beta_F{};  ///< its growth rate [-]
+};
+
+template <class T>
+LawModuli<T> moduli_at(const LawParameters<T>& p, double nu) {
+  return {p.isotropic.B_star(nu), p.stress_ratio_max.value(nu, p.shear_nu_c), p.stress_rate.value(nu, p.shear_nu_c),
+          p.fabric_max.value(nu, p.shear_nu_c), p.fabric_rate.value(nu, p.shear_nu_c)};
+}
+
+/// Right-hand side of Eq. (16): d(state)/de with the moduli of the current volume fraction. Finite for P > 0 and finite
+/// arguments.
+template <class T>
+LawState<T> evolution_rate(const LawModuli<T>& m, const Anisotropy<T>& anisotropy, Coupling coupling,
+                           const LawState<T>& y, const LawDirection& direction) {
   const Deviator<T> N = direction.N.template cast<T>();
   const T sigma_N = y.sigma.dot(N);
   const T F_N = y.F.dot(N);
   T A1, A2_per_F;
   if (coupling == Coupling::single) {
-    A1 = p.anisotropy.a0 * F_N;
-    A2_per_F = p.anisotropy.a0 / 3.0;
+    A1 = anisotropy.a0 * F_N;
+    A2_per_F = anisotropy.a0 / 3.0;
   } else {
-    A2_per_F = p.anisotropy.a2 * B;
+    A2_per_F = anisotropy.a2 * m.B;
     A1 = (2.0 / 3.0) * (A2_per_F * F_N - sigma_N);
   }
-  const T S = 1.0 - sigma_N / (y.P * s_max);
+  const T S = 1.0 - sigma_N / (y.P * m.s_max);
   LawState<T> rate;
-  rate.P = B * direction.dx + A1 * S * direction.de;
-  rate.sigma = y.F * (A2_per_F * direction.dx) + (N * (beta_s * s_max * y.P) - y.sigma * beta_s) * T(direction.de);
-  rate.F = (N * F_max - y.F) * (beta_F * direction.de);
+  rate.P = m.B * direction.dx + A1 * S * direction.de;
+  rate.sigma =
+      y.F * (A2_per_F * direction.dx) + (N * (m.beta_s * m.s_max * y.P) - y.sigma * m.beta_s) * T(direction.de);
+  rate.F = (N * m.F_max - y.F) * (m.beta_F * direction.de);
   return rate;
+}
+
+/// The same at volume fraction `nu`.
+template <class T>
+LawState<T> evolution_rate(const LawParameters<T>& p, Coupling coupling, const LawState<T>& y, double nu,
+                           const LawDirection& direction) {
+  return evolution_rate(moduli_at(p, nu), p.anisotropy, coupling, y, direction);
 }
 
 }  // namespace grainlaw
