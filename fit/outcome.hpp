@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,14 +21,15 @@ enum class Status {
 std::string to_string(Status status);
 
 struct Estimate {
-  double value = 0;           ///< not to be read when not identified
-  double standard_error = 0;  ///< cluster-robust over runs, see covariance.hpp; NaN unless fitted or tied
+  double value = 0;  ///< not to be read when not identified
+  double standard_error =
+      std::numeric_limits<double>::quiet_NaN();  ///< over runs, covariance.hpp; NaN unless fitted or tied
   Status status = Status::not_identified;
-  std::string note;           ///< why, e.g. which experiment would identify it; may be empty
+  std::string note;  ///< why, e.g. which experiment would identify it; may be empty
 };
 
 struct NamedEstimate {
-  std::string name;   ///< of parameter_table()
+  std::string name;  ///< of parameter_table()
   Estimate estimate;
 };
 
@@ -44,11 +46,11 @@ struct TestResidual {
 };
 
 struct Stage {
-  std::string name;          ///< "coordination", "steady_pressure", "evolution", ...
-  std::string window;        ///< rows and weights in words, with numbers
+  std::string name;    ///< "coordination", "steady_pressure", "evolution", ...
+  std::string window;  ///< rows and weights in words, with numbers
   int residuals = 0, free_parameters = 0, iterations = 0;
   double initial_cost = 0, final_cost = 0;  ///< half the sum of squared weighted residuals
-  std::string termination;   ///< Ceres's word and message
+  std::string termination;                  ///< Ceres's word and message
   bool converged = false;
   double seconds = 0;
   std::vector<TestResidual> tests;
@@ -60,11 +62,11 @@ struct ShearFit {
   std::string test;
   Mode mode = Mode::D2;
   std::uint64_t seed = 0;
-  double nu = 0;                              ///< volume fraction of the test [-]
-  double eps_dev_max = 0;                     ///< deviatoric strain reached [-]
-  Estimate s_max, beta_s, F_max, beta_F;      ///< of the fits; one run, hence without standard error
-  double s_0 = 0, F_0 = 0;                    ///< start values, measured in the first row [-]
-  double s_steady = 0, F_steady = 0;          ///< steady means; NaN when the test ends before steady_from [-]
+  double nu = 0;                                        ///< volume fraction of the test [-]
+  double eps_dev_max = 0;                               ///< deviatoric strain reached [-]
+  Estimate s_max, beta_s, F_max, beta_F;                ///< of the fits; one run, hence without standard error
+  double s_0 = 0, F_0 = 0;                              ///< start values, measured in the first row [-]
+  double s_steady = 0, F_steady = 0;                    ///< steady means; NaN when the test ends before steady_from [-]
   double C_star = 0, rattler_fraction = 0, P_star = 0;  ///< steady means, likewise [-]
 };
 

@@ -1,0 +1,29 @@
+#pragma once
+// The tests of a calibration, refused when they cannot be trusted and sorted by what they can say.
+
+#include <vector>
+
+#include "fit/options.hpp"
+#include "model/test_record.hpp"
+
+namespace grainlaw::fit {
+
+struct DataSet {
+  std::vector<const TestRecord*> isotropic;   ///< ISO unloading
+  std::vector<const TestRecord*> pure_shear;  ///< one segment at constant volume
+  std::vector<const TestRecord*> other;       ///< every other path with shear: UNI, sequences, reversals
+  std::vector<std::string> unused;            ///< names of tests without shear that are not ISO unloading
+
+  std::vector<const TestRecord*> all_used() const;
+};
+
+/// Points into `tests`. Throws InvalidInput naming test, row and column, with the remedy, for: a validation test, no
+/// rows, a name given twice, one series under two names, a packing without size or stiffness; strain, nu, stress, P_star
+/// or fabric not finite; P_star that is not 2<r>/k of the mean stress, nu that does not follow the strain, F_v that is not
+/// the trace of the fabric (columns swapped, units changed); no ISO unloading or no shear at constant volume.
+DataSet check_and_sort(const std::vector<TestRecord>& tests);
+
+/// Independent of one another are runs from different kept states: one number per (seed, branch, nu at the start).
+int cluster_of(const DataSet& data, const TestRecord& test);
+
+}  // namespace grainlaw::fit

@@ -1,0 +1,46 @@
+#pragma once
+// What the density laws are fitted to: rows of the ISO unloading branch, and steady means of shear at constant volume.
+
+#include <string>
+#include <vector>
+
+#include "fit/data_set.hpp"
+
+namespace grainlaw::fit {
+
+struct DensityPoint {
+  double nu = 0;                ///< volume fraction [-]
+  double C_star = 0;            ///< corrected coordination number [-]
+  double rattler_fraction = 0;  ///< phi_r [-]
+  double P_star = 0;            ///< [-]
+  double F_v = 0;               ///< trace of the fabric [-]
+  double mean_overlap = 0;      ///< <delta>_c/<r>; NaN where the data set does not contain it [-]
+
+  double C() const { return (1 - rattler_fraction) * C_star; }  ///< modified coordination number [-]
+};
+
+/// The points that one test gives.
+struct DensitySeries {
+  std::string test;
+  int cluster = 0;
+  int excluded = 0;  ///< rows outside the window, or unjammed
+  std::vector<DensityPoint> points;
+};
+
+/// Rows of the ISO unloading tests with nu >= iso_nu_min. Throws InvalidInput naming test, row and column when a
+/// coordination number or rattler fraction of a jammed row is missing, or when no row is in the window.
+std::vector<DensitySeries> isotropic_series(const DataSet& data, const CalibrationOptions& options);
+
+/// One point per D2 test: means over eps_dev >= steady_from. Tests that end before, or are not jammed there, are absent.
+std::vector<DensitySeries> steady_series(const DataSet& data, const CalibrationOptions& options);
+
+/// A row without a network that carries: contacts may exist, P* is below what any jammed state here has.
+bool is_jammed(const Observation& row);
+
+/// Smallest volume fraction of all points.
+double least_nu(const std::vector<DensitySeries>& series);
+
+/// Number of volume fractions that differ by more than 0.002.
+int distinct_densities(std::vector<double> nu);
+
+}  // namespace grainlaw::fit

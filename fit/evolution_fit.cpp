@@ -1,0 +1,165 @@
+#include "fit/evolution_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "fit/density_series.hpp"
+#include "fit/shear_fit.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+constexpr double kFelt = 0.5;             // norm of weighted misfits below which a change of a parameter goes unnoticed
+constexpr double kVagueRate = 0.5;        // relative error of a rate beyond which it is no number
+constexpr double kVolumetricPath = 1e-3;  // |d eps_vol| of a trajectory that says something about the coupling
+constexpr int kDensitiesNeeded = 3;
+
+struct Pair {
+  const char *limit, *rate;
+  ExponentialLaw<double> LawParameters<double>::*rate_law;
+};
+constexpr std::array<Pair, 2> kPairs{{
+    {"stress_ratio_max", "stress_rate", &LawParameters<double>::stress_rate},
+    {"fabric_max", "fabric_rate", &LawParameters<double>::fabric_rate},
+}};
+
+void withdraw(StageFit& fit, const std::string& law, const std::string& note) {
+  for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) fit.mark_not_identified(law + part, note);
+}
+
+Eigen::Index index_of(const StageFit& fit, const std::string& name) {
+  for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
+    if (fit.stage.estimates[k].name == name) return static_cast<Eigen::Index>(k);
+  }
+  return -1;
+}
+
+/// Densities at which shear goes on for long enough to tell the limit from the slope.
+std::vector<double> saturating_densities(const std::vector<Trajectory>& trajectories, const LawParameters<double>& law,
+                                         const Pair& pair) {
+  std::vector<double> nu;
+  for (const Trajectory& t : trajectories) {
+    if (t.rows.empty() || t.direction.de == 0) continue;
+    const double rate = (law.*pair.rate_law).value(t.nu_start, law.shear_nu_c);
+    if (rate * t.direction.de * t.rows.back().e >= kShownSaturation) nu.push_back(t.nu_start);
+  }
+  return nu;
+}
+
+void judge_pair(StageFit& fit, const std::vector<Trajectory>& trajectories, const LawParameters<double>& law,
+                const Pair& pair, const CalibrationOptions& options) {
+  std::vector<double> nu = saturating_densities(trajectories, law, pair);
+  const int found = distinct_densities(nu);
+  if (found < kDensitiesNeeded) {
+    const std::string note = fmt::format(
+        "saturation shown at {} of at least {} densities; shear at more densities, each to "
+        "eps_dev >= {:g}",
+        found, kDensitiesNeeded, options.steady_from);
+    withdraw(fit, pair.limit, note);
+    withdraw(fit, pair.rate, note);
+    return;
+  }
+  // What a change of all rates by the same factor would do.
+  const Eigen::Index limit = index_of(fit, std::string(pair.rate) + ".Q_limit");
+  const Solution& solution = fit.solution;
+  const Eigen::VectorXd felt = solution.weight.cwiseProduct(solution.jacobian.col(limit) * solution.x(limit) +
+                                                            solution.jacobian.col(limit + 1) * solution.x(limit + 1));
+  std::sort(nu.begin(), nu.end());
+  const double middle = nu[nu.size() / 2], decay = std::exp(-solution.x(limit + 2) * (middle / law.shear_nu_c - 1));
+  const Eigen::Vector3d slope(1, decay, -solution.x(limit + 1) * decay * (middle / law.shear_nu_c - 1));
+  const double rate = solution.x(limit) + solution.x(limit + 1) * decay;
+  const double error = std::sqrt(std::max(0.0, slope.dot(fit.covariance.block<3, 3>(limit, limit) * slope)));
+  if (felt.norm() < kFelt || error > kVagueRate * rate) {
+    withdraw(fit, pair.rate,
+             fmt::format("there is too little {} to see how fast it grows; use larger packings or lower "
+                         "densities",
+                         pair.limit));
+  }
+}
+
+std::string window_text(const CalibrationOptions& options) {
+  return fmt::format(
+      "all trajectories, each segment from its measured start: P* of ISO unloading (nu >= {:g}, start on Eq. (14)) "
+      "relative, "
+      "scale {:g}; s_par scale {:g} and F_par scale {:g} in shear, 0 < eps_dev <= {:g} and eps_dev >= {:g} of equal "
+      "weight "
+      "at constant volume, all rows elsewhere; P* in shear is shown without weight because Eq. (16) has no dilatancy",
+      options.iso_nu_min, options.pressure_scale, options.stress_scale, options.fabric_scale, options.rate_window,
+      options.steady_from);
+}
+
+}  // namespace
+
+bool contains_anisotropy(const std::vector<Trajectory>& trajectories) {
+  return std::any_of(trajectories.begin(), trajectories.end(), [](const Trajectory& t) {
+    return !t.axes.empty() && !t.rows.empty() && std::abs(t.direction.dx) * t.rows.back().e > kVolumetricPath;
+  });
+}
+
+StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
+                       const CalibrationOptions& options, const RunControl& control) {
+  const bool energy = options.coupling == Coupling::energy;
+  const std::string coupling = energy ? "anisotropy.a2" : "anisotropy.a0";
+  const bool anisotropy = contains_anisotropy(trajectories);
+  const EvolutionProblem problem = evolution_problem(trajectories, law, anisotropy, options);
+  StageFit fit = fit_stage("evolution", window_text(options), problem.parameters, problem.blocks,
+                           "the trajectories do not determine it; test more densities, and D2 to steady state",
+                           options.threads, control);
+  const std::string remedy =
+      "add a test that shears and then changes the volume, e.g. D2 to eps_dev = 0.15 and then ISO "
+      "to nu + 0.03 and back";
+  if (fit.solution.defined) {
+    const auto field = fields(law);
+    for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
+      *field[parameter_index(problem.parameters[k].name)] = fit.solution.x(static_cast<Eigen::Index>(k));
+    }
+    for (const Pair& pair : kPairs) judge_pair(fit, trajectories, law, pair, options);
+    if (anisotropy) {
+      const Eigen::Index a = index_of(fit, coupling);
+      if (fit.solution.weight.cwiseProduct(fit.solution.jacobian.col(a)).norm() < kFelt) {
+        fit.mark_not_identified(coupling, "too little fabric on the paths that change the volume; " + remedy);
+      }
+    }
+  }
+  if (!anisotropy) fit.stage.estimates.push_back({coupling, {0, std::nan(""), Status::not_identified, remedy}});
+  return fit;
+}
+
+Estimate tied_a1(const std::vector<Trajectory>& trajectories, const LawParameters<double>& law, const Estimate& a2,
+                 const CalibrationOptions& options) {
+  Estimate a1{0, std::numeric_limits<double>::quiet_NaN(), Status::not_identified,
+              "follows from a2 by A1 = (2/3)(A2 - sigma_dev): " + a2.note};
+  if (a2.status == Status::not_identified) return a1;
+  std::map<std::string, std::pair<double, int>> ratio;  // sum of sigma_N/(B F_N) and rows, per test
+  for (const Trajectory& t : trajectories) {
+    if (t.direction.de == 0 || std::abs(t.direction.dx) > 1e-12) continue;
+    const double B = law.isotropic.B_star(t.nu_start);
+    for (const TrajectoryRow& row : t.rows) {
+      const double F = row.data.F.dot(t.direction.N);
+      if (t.direction.de * row.e < options.steady_from || !(F > 0)) continue;
+      auto& [sum, rows] = ratio[t.test];
+      sum += row.data.sigma.dot(t.direction.N) / (B * F);
+      ++rows;
+    }
+  }
+  if (ratio.empty()) {
+    a1.note = "no steady shear to refer it to; shear to eps_dev >= " + fmt::format("{:g}", options.steady_from);
+    return a1;
+  }
+  const double n = static_cast<double>(ratio.size());
+  double mean = 0, scatter = 0;
+  for (const auto& [test, sum] : ratio) mean += sum.first / sum.second / n;
+  for (const auto& [test, sum] : ratio) scatter += std::pow(sum.first / sum.second - mean, 2);
+  const double of_mean = n > 1 ? scatter / (n - 1) / n : std::numeric_limits<double>::quiet_NaN();
+  a1.value = 2. / 3 * (a2.value - mean);
+  a1.standard_error = 2. / 3 * std::sqrt(a2.standard_error * a2.standard_error + of_mean);
+  a1.status = Status::tied;
+  a1.note = fmt::format("mean of A1/(B F) over steady shear of {} tests, A1 = (2/3)(A2 - sigma_dev)", ratio.size());
+  return a1;
+}
+
+}  // namespace grainlaw::fit

@@ -1,0 +1,40 @@
+#pragma once
+// The coupled evolution equations, Eq. (16), on all trajectories at once. Free: p0, gamma_p, nu_c of Eq. (14), the twelve
+// numbers of Eq. (20), and a2 (Coupling::energy) or a0 (Coupling::single). Compared, row by row at the observed strains:
+//   P*  relative to the datum, on ISO unloading only. In shear P is shown but has no weight: Eq. (16) has no dilatancy
+//       (+33 % at nu = .68), and a fit of it would turn a2 (through A1) and p0 into something else.
+//   s   sigma'/P with the model's own P in the model and the measured one in the data, so that a wrong level of P cancels
+//   F   fabric
+// The deviators along the directions of the test's own segments (s_par, F_par; one component on co-axial paths): what
+// stands across them is the noise of a finite packing, and no parameter moves it.
+// Each test, quantity and window counts the same (shear_window.hpp), in units of the scales in CalibrationOptions.
+
+#include "fit/stage_fit.hpp"
+#include "fit/trajectory.hpp"
+
+namespace grainlaw::fit {
+
+struct EvolutionProblem {
+  std::vector<FreeParameter> parameters;
+  std::vector<ResidualBlock> blocks;  ///< one per trajectory
+};
+
+/// Starts from `start`; parameters that are not free keep its values. `anisotropy_free`: a2 or a0 is free.
+EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
+                                   bool anisotropy_free, const CalibrationOptions& options);
+
+/// True when a trajectory changes the volume of a state with fabric along its test's shear: only then the coupling of
+/// fabric and volumetric strain is in the data.
+bool contains_anisotropy(const std::vector<Trajectory>& trajectories);
+
+/// Stage "evolution"; `law` holds the start and takes the result. Claims are withdrawn where the data cannot carry them:
+/// saturation shown at fewer than three densities, a rate that acts on nothing, no path that identifies the coupling.
+StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
+                       const CalibrationOptions& options, const RunControl& control);
+
+/// a1 = mean of A1/(B F_N) over steady shear by the identity A1 = (2/3)(A2 - sigma_dev): tied to a2, Coupling::energy.
+/// Its error comes from a2's and from the scatter of the ratio over tests.
+Estimate tied_a1(const std::vector<Trajectory>& trajectories, const LawParameters<double>& law, const Estimate& a2,
+                 const CalibrationOptions& options);
+
+}  // namespace grainlaw::fit

@@ -1,0 +1,282 @@
+#include "fit/least_squares.hpp"
+
+#include <ceres/cost_function.h>
+#include <ceres/iteration_callback.h>
+#include <ceres/manifold.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <thread>
+
+#include "model/error.hpp"
+#include "model/parameters.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr double kGradientCosine = 1e-6;  // |cos| between the residual and every column of J at a true minimum
+constexpr double kExact = 1e-9;           // misfit over data below which the cosine is that of rounding errors
+constexpr double kOnBound = 1e-7;         // distance in units of the parameter's scale
+constexpr int kIterationsPerRound = 8, kRounds = 60;
+
+/// All blocks as one cost function of x/scale.
+class Blocks : public ceres::CostFunction {
+ public:
+  Blocks(const std::vector<ResidualBlock>& blocks, Eigen::VectorXd scale, int threads)
+      : blocks_(blocks), scale_(std::move(scale)), threads_(threads) {
+    for (const ResidualBlock& block : blocks_) {
+      first_row_.push_back(rows_);
+      rows_ += block.rows();
+    }
+    set_num_residuals(rows_);
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(scale_.size()));
+  }
+
+  bool Evaluate(double const* const* z, double* residuals, double** jacobians) const override {
+    const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(z[0], scale_.size()).cwiseProduct(scale_);
+    double* jacobian = jacobians == nullptr ? nullptr : jacobians[0];
+    if (!misfit(x, residuals, jacobian)) return false;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const Eigen::VectorXd& w = blocks_[b].weight;
+      Eigen::Map<Eigen::VectorXd>(residuals + first_row_[b], w.size()).array() *= w.array();
+    }
+    if (jacobian != nullptr) {
+      Eigen::Map<RowMajor> J(jacobian, rows_, scale_.size());
+      J = J * scale_.asDiagonal();
+      for (std::size_t b = 0; b < blocks_.size(); ++b) {
+        const Eigen::VectorXd& w = blocks_[b].weight;
+        J.middleRows(first_row_[b], w.size()).array().colwise() *= w.array();
+      }
+    }
+    return true;
+  }
+
+  /// Unweighted model - data and d/dx.
+  bool misfit(const Eigen::VectorXd& x, double* values, double* jacobian) const {
+    std::fill(values, values + rows_, std::nan(""));
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> good = true;
+    const auto work = [&] {
+      for (std::size_t b = next++; b < blocks_.size(); b = next++) {
+        double* J = jacobian == nullptr ? nullptr : jacobian + static_cast<std::ptrdiff_t>(first_row_[b]) * x.size();
+        if (!blocks_[b].evaluate(x.data(), values + first_row_[b], J)) good = false;
+      }
+    };
+    const int extra = std::min<int>(threads_, static_cast<int>(blocks_.size())) - 1;
+    {
+      std::vector<std::jthread> team;
+      for (int t = 0; t < extra; ++t) team.emplace_back(work);
+      work();
+    }
+    if (!good) return false;
+    const auto finite = [](const double* from, std::ptrdiff_t n) {
+      return std::all_of(from, from + n, [](double v) { return std::isfinite(v); });
+    };
+    return finite(values, rows_) && (jacobian == nullptr || finite(jacobian, rows_ * x.size()));
+  }
+
+  /// The first block that has no finite value at `x`, for messages.
+  std::string offender(const Eigen::VectorXd& x) const {
+    for (const ResidualBlock& block : blocks_) {
+      std::vector<double> values(static_cast<std::size_t>(block.rows()), std::nan(""));
+      const bool defined = block.evaluate(x.data(), values.data(), nullptr);
+      const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
+      if (!defined || bad != values.end()) {
+        return fmt::format("test {}, row {} of the fit", block.test, bad - values.begin());
+      }
+    }
+    return "none";
+  }
+
+ private:
+  const std::vector<ResidualBlock>& blocks_;
+  Eigen::VectorXd scale_;
+  int threads_;
+  int rows_ = 0;
+  std::vector<int> first_row_;
+};
+
+class StopOnRequest : public ceres::IterationCallback {
+ public:
+  StopOnRequest(std::string stage, const RunControl& control) : stage_(std::move(stage)), control_(control) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
+    if (control_.report) control_.report({stage_, 0, static_cast<double>(iteration.iteration), "iterations"});
+    return control_.stop.stop_requested() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  std::string stage_;
+  const RunControl& control_;
+};
+
+/// Ceres also reports success when its trust region has shrunk to nothing. A minimum is one when the weighted residual
+/// is orthogonal to every column of J whose parameter is free to move.
+bool is_minimum(const Solution& solution, const std::vector<ResidualBlock>& blocks, const std::vector<int>& held) {
+  double data = 0;
+  for (const ResidualBlock& block : blocks) {
+    for (const Channel& c : block.channels)
+      data += (block.weight.segment(c.first, c.rows) * c.max_abs_data).squaredNorm();
+  }
+  const Eigen::VectorXd r = solution.weight.cwiseProduct(solution.misfit);
+  if (r.squaredNorm() <= kExact * kExact * data) return true;
+  for (Eigen::Index k = 0; k < solution.x.size(); ++k) {
+    if (std::find(held.begin(), held.end(), static_cast<int>(k)) != held.end()) continue;
+    const Eigen::VectorXd column = solution.weight.cwiseProduct(solution.jacobian.col(k));
+    if (std::abs(column.dot(r)) > kGradientCosine * column.norm() * r.norm()) return false;
+  }
+  return true;
+}
+
+/// Parameters on a bound that the cost would push further out.
+std::vector<int> held_by_bounds(const Solution& solution, const std::vector<FreeParameter>& parameters) {
+  std::vector<int> held;
+  const Eigen::VectorXd w2r = solution.weight.cwiseAbs2().cwiseProduct(solution.misfit);
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double gradient = solution.jacobian.col(i).dot(w2r);
+    if ((solution.x(i) == parameters[k].lower && gradient > 0) ||
+        (solution.x(i) == parameters[k].upper && gradient < 0)) {
+      held.push_back(static_cast<int>(k));
+    }
+  }
+  return held;
+}
+
+std::string listed(const std::vector<FreeParameter>& parameters, const Eigen::VectorXd& x) {
+  std::string text;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    text += fmt::format("{}{} = {:.6g}", k == 0 ? "" : ", ", parameters[k].name, x(static_cast<Eigen::Index>(k)));
+  }
+  return text;
+}
+
+ceres::Solver::Options solver_options(ceres::IterationCallback* callback) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = kIterationsPerRound;
+  options.function_tolerance = 1e-14;
+  options.gradient_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-12;
+  // No line search along projected steps: it shortens a step where the trust region would turn it.
+  options.max_num_line_search_step_size_iterations = 0;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  options.callbacks.push_back(callback);
+  return options;
+}
+
+/// Values, Jacobian and bounds at the scaled parameters `z`.
+void evaluate(const Blocks& cost, const Eigen::VectorXd& z, const std::vector<FreeParameter>& parameters,
+              Solution& solution) {
+  solution.x.resize(z.size());
+  solution.at_bound.clear();
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const FreeParameter& p = parameters[k];
+    double& x = solution.x(static_cast<Eigen::Index>(k));
+    x = z(static_cast<Eigen::Index>(k)) * p.scale;
+    if (x - p.lower <= kOnBound * p.scale) x = p.lower;
+    if (p.upper - x <= kOnBound * p.scale) x = p.upper;
+    solution.at_bound.push_back(x == p.lower || x == p.upper);
+  }
+  RowMajor jacobian(solution.weight.size(), z.size());
+  solution.misfit.resize(solution.weight.size());
+  solution.defined = cost.misfit(solution.x, solution.misfit.data(), jacobian.data());
+  solution.jacobian = jacobian;
+}
+
+}  // namespace
+
+FreeParameter free_parameter(const std::string& name, double start) {
+  const ParameterInfo& info = parameter_table()[parameter_index(name)];
+  const double scale = std::max(std::abs(start), 1e-3 * (info.upper - info.lower));
+  return {name, start, info.lower, info.upper, scale};
+}
+
+Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks, int threads,
+               const std::string& stage, const RunControl& control) {
+  if (control.stop.stop_requested()) throw Interrupted("fit: stopped on request");
+  const auto begin = std::chrono::steady_clock::now();
+  const auto n = static_cast<Eigen::Index>(parameters.size());
+  Solution solution;
+  Eigen::VectorXd scale(n), z(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const FreeParameter& p = parameters[static_cast<std::size_t>(k)];
+    scale(k) = p.scale;
+    z(k) = std::clamp(p.start, p.lower, p.upper) / p.scale;
+  }
+  int rows = 0;
+  for (const ResidualBlock& block : blocks) {
+    rows += block.rows();
+    solution.cluster.insert(solution.cluster.end(), static_cast<std::size_t>(block.rows()), block.cluster);
+  }
+  solution.weight.resize(rows);
+  for (Eigen::Index row = 0; const ResidualBlock& block : blocks) {
+    solution.weight.segment(row, block.rows()) = block.weight;
+    row += block.rows();
+  }
+
+  // Ceres projects steps into the box but does not hold a parameter there, which makes the others crawl. Parameters that
+  // a bound holds back are therefore taken out between rounds, and let go again when the cost no longer pushes.
+  Blocks cost(blocks, scale, threads);
+  StopOnRequest stop(stage, control);
+  evaluate(cost, z, parameters, solution);
+  std::vector<int> held;
+  if (solution.defined) held = held_by_bounds(solution, parameters);
+  if (static_cast<Eigen::Index>(held.size()) == n) held.clear();
+  double radius = 1e4;  // Ceres's own start
+  ceres::Solver::Summary summary;
+  for (int round = 0; round < kRounds; ++round) {
+    ceres::Problem::Options keep;
+    keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ceres::Problem problem(keep);
+    problem.AddResidualBlock(&cost, nullptr, z.data());
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const FreeParameter& p = parameters[static_cast<std::size_t>(k)];
+      problem.SetParameterLowerBound(z.data(), static_cast<int>(k), p.lower / p.scale);
+      problem.SetParameterUpperBound(z.data(), static_cast<int>(k), p.upper / p.scale);
+    }
+    if (!held.empty()) problem.SetManifold(z.data(), new ceres::SubsetManifold(static_cast<int>(n), held));
+    ceres::Solver::Options options = solver_options(&stop);
+    options.initial_trust_region_radius = radius;
+    ceres::Solve(options, &problem, &summary);
+    if (control.stop.stop_requested()) throw Interrupted("fit: stopped on request in stage " + stage);
+    if (!summary.iterations.empty()) radius = std::clamp(summary.iterations.back().trust_region_radius, 1e2, 1e8);
+    solution.iterations += std::max(0, summary.num_successful_steps + summary.num_unsuccessful_steps);
+    if (round == 0) solution.initial_cost = summary.initial_cost;
+    evaluate(cost, z, parameters, solution);
+    if (!solution.defined) break;
+    z = solution.x.cwiseQuotient(scale);
+    const std::vector<int> next = held_by_bounds(solution, parameters);
+    const bool settled = summary.termination_type == ceres::CONVERGENCE && is_minimum(solution, blocks, next);
+    if (settled || static_cast<Eigen::Index>(next.size()) == n) {
+      held = next;
+      break;
+    }
+    if (next == held && summary.termination_type == ceres::CONVERGENCE) break;  // no better by trying again
+    held = next;
+  }
+  solution.final_cost = summary.final_cost;
+  solution.termination =
+      fmt::format("{}: {}", ceres::TerminationTypeToString(summary.termination_type), summary.message);
+  if (!solution.defined) {
+    solution.termination +=
+        fmt::format(" (no finite value at {}: {})", cost.offender(solution.x), listed(parameters, solution.x));
+  }
+  solution.converged =
+      solution.defined && summary.termination_type == ceres::CONVERGENCE && is_minimum(solution, blocks, held);
+  if (solution.defined && summary.termination_type == ceres::CONVERGENCE && !solution.converged) {
+    solution.termination += " (but the gradient does not vanish)";
+  }
+  solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return solution;
+}
+
+}  // namespace grainlaw::fit

@@ -1,0 +1,33 @@
+#pragma once
+// Eqs. (17) and (18) on one test of shear at constant volume:
+//   s(e) = s_max - (s_max - s_0) exp(-beta_s e),   F(e) = F_max - (F_max - F_0) exp(-beta_F e)
+// s = <sigma',N>/P and F = <F',N> signed along the shear (norms are biased upwards in a finite packing), e the deviatoric
+// strain, s_0 and F_0 measured in the first row. Both windows of shear_window.hpp enter: s_max and F_max then are the
+// steady means as Table 3 has them, where a fit of the first 0.12 alone would take the peak for the limit.
+
+#include "fit/data_set.hpp"
+#include "fit/stage_fit.hpp"
+
+namespace grainlaw::fit {
+
+/// The problem of one quantity: parameters (limit, rate), one block.
+struct SaturationProblem {
+  std::vector<FreeParameter> parameters;
+  std::vector<ResidualBlock> blocks;
+};
+SaturationProblem saturation_problem(const std::string& test, const std::string& quantity,
+                                     const std::vector<double>& eps_dev, const std::vector<double>& value, double start,
+                                     const CalibrationOptions& options);
+
+/// Shortest shear that shows saturation: rate times strain. Below it limit and rate are one number, the slope.
+inline constexpr double kShownSaturation = 0.5;
+
+/// One test; also appends its two misfits and costs to `stage`.
+ShearFit fit_shear(const TestRecord& test, double nu_c, const CalibrationOptions& options, const RunControl& control,
+                   Stage& stage);
+
+/// All tests at constant volume, and the stage "shear" that sums them up. Tests at nu <= `nu_c`, Eq. (14)'s, leave the fit.
+std::vector<ShearFit> fit_shear_tests(const DataSet& data, double nu_c, const CalibrationOptions& options,
+                                      const RunControl& control, Stage& stage);
+
+}  // namespace grainlaw::fit
