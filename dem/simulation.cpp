@@ -54,7 +54,8 @@ void restore_list(Simulation& sim) {
   sim.list = build_list(reference, sim.list.skin, *sim.team);
 }
 
-/// Runs the force pass block by block; `after` sees each block when its forces are known.
+/// Runs the force pass block by block. When the forces of a block are known, after(begin, end) brings its velocities to
+/// the end of the step; then the powers are taken that need both.
 template <class After>
 void force_pass(Simulation& sim, const CellMotion& motion, const After& after) {
   const Packing& p = sim.state.packing;
@@ -63,22 +64,25 @@ void force_pass(Simulation& sim, const CellMotion& motion, const After& after) {
   std::vector<PassSums> parts(block_count(p.size()));
   sim.team->for_each_block(parts.size(), [&](std::size_t block) {
     const auto [begin, end] = block_range(block, p.size());
-    parts[block] = contact_forces(field, begin, end, sim.force.data());
-    after(block, begin, end);
+    PassSums& part = parts[block] = contact_forces(field, begin, end, sim.force.data(), sim.viscous.data());
+    after(begin, end);
+    double lost = 0, v2 = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Row& F_v = sim.viscous[i];
+      lost -= F_v[0] * p.vx[i] + F_v[1] * p.vy[i] + F_v[2] * p.vz[i];
+      v2 += p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i];
+    }
+    part.contact_power += lost;
+    part.drag_power = sim.state.material.background_viscosity * v2;
   });
   PassSums sums;
   for (const PassSums& part : parts) {
     sums.box_power += part.box_power;
     sums.contact_power += part.contact_power;
     sums.E_pot += part.E_pot;
+    sums.drag_power += part.drag_power;
   }
   sim.state.sums = sums;
-}
-
-double sum(const std::vector<double>& parts) {
-  double total = 0;
-  for (const double part : parts) total += part;
-  return total;
 }
 
 void first_forces(Simulation& sim, const CellMotion& motion) {
@@ -87,16 +91,13 @@ void first_forces(Simulation& sim, const CellMotion& motion) {
   for (std::size_t i = 0; i < p.size(); ++i) sim.motion[i] = {p.vx[i], p.vy[i], p.vz[i], 0};
   for (auto* a : {&state.ax, &state.ay, &state.az}) a->assign(p.size(), 0.0);
   const double gamma_b = state.material.background_viscosity;
-  std::vector<double> v2(block_count(p.size()));
-  force_pass(sim, motion, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  force_pass(sim, motion, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       state.ax[i] = (sim.force[i][0] - gamma_b * p.vx[i]) / p.mass[i];
       state.ay[i] = (sim.force[i][1] - gamma_b * p.vy[i]) / p.mass[i];
       state.az[i] = (sim.force[i][2] - gamma_b * p.vz[i]) / p.mass[i];
-      v2[block] += p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i];
     }
   });
-  state.sums.drag_power = gamma_b * sum(v2);
 }
 
 /// First half of a step for the spheres of a block: half kick, drift, prediction of the velocity. Returns the largest
@@ -133,12 +134,11 @@ double kick_and_drift(Simulation& sim, const CellMotion& half, const Eigen::Matr
   return moved2;
 }
 
-/// Second half: kick with the new force, drag treated implicitly. Returns sum of v^2 over the block.
-double kick(Simulation& sim, std::size_t begin, std::size_t end) {
+/// Second half: kick with the new force, drag treated implicitly.
+void kick(Simulation& sim, std::size_t begin, std::size_t end) {
   State& state = sim.state;
   Packing& p = state.packing;
   const double h = sim.dt / 2, gamma_b = state.material.background_viscosity;
-  double v2 = 0;
   for (std::size_t i = begin; i < end; ++i) {
     const double inverse_mass = 1 / p.mass[i];
     const double damped = 1 / (1 + h * gamma_b * inverse_mass);
@@ -148,9 +148,7 @@ double kick(Simulation& sim, std::size_t begin, std::size_t end) {
     state.ax[i] = (sim.force[i][0] - gamma_b * p.vx[i]) * inverse_mass;
     state.ay[i] = (sim.force[i][1] - gamma_b * p.vy[i]) * inverse_mass;
     state.az[i] = (sim.force[i][2] - gamma_b * p.vz[i]) * inverse_mass;
-    v2 += p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i];
   }
-  return v2;
 }
 
 [[noreturn]] void report_lost_sphere(const Packing& p) {
@@ -177,6 +175,7 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
   sim.place.resize(n);
   sim.motion.resize(n);
   sim.force.resize(n);
+  sim.viscous.resize(n);
   if (n > 0) {
     sim.dt = options.time_step_fraction * min_collision_time(p, sim.state.material);
     if (!(sim.dt > 0) || !std::isfinite(sim.dt)) {
@@ -205,7 +204,7 @@ void advance(Simulation& sim, const CellMotion& half, const CellMotion& end) {
   State& state = sim.state;
   Packing& p = state.packing;
   const std::size_t n = p.size();
-  const double h = sim.dt / 2, gamma_b = state.material.background_viscosity;
+  const double h = sim.dt / 2;
   const double box_power = state.sums.box_power;
   const double lost_power = state.sums.contact_power;
   const double drag_power = state.sums.drag_power;
@@ -227,9 +226,7 @@ void advance(Simulation& sim, const CellMotion& half, const CellMotion& end) {
   const double allowed = allowed_displacement(sim.list, state.ref_H, p.H);
   if (n > 0 && !(std::sqrt(farthest2) < allowed)) rebuild(sim);
 
-  std::vector<double> v2(block_count(n));
-  force_pass(sim, end, [&](std::size_t block, std::size_t first, std::size_t last) { v2[block] = kick(sim, first, last); });
-  state.sums.drag_power = gamma_b * sum(v2);
+  force_pass(sim, end, [&](std::size_t first, std::size_t last) { kick(sim, first, last); });
 
   ++state.step;
   state.time += sim.dt;

@@ -2,7 +2,7 @@
 // Time integration of a packing in a moving periodic cell: velocity Verlet on the fluctuation velocities.
 //   dx/dt = v + L x, i.e. ds/dt = H^-1 v;   m dv/dt = sum f - gamma_b v;   H(t), L(t) given, not integrated
 // Velocity-dependent forces use the velocity predicted to the end of the step (second order). Energy account by the
-// trapezoidal rule in the same pass. Same bits for any number of threads: each sphere sums its own contacts in the
+// trapezoidal rule, with the forces that act and the velocities they act on. Same bits for any number of threads: each sphere sums its own contacts in the
 // order of its sorted neighbours, totals are summed in blocks of fixed size.
 
 #include <memory>
@@ -40,7 +40,8 @@ struct Simulation {
   double dt = 0;            ///< time step [s]
   NeighbourList list;
   std::uint64_t rebuilds = 0;      ///< of the list since the start of the simulation
-  std::vector<Row> place, motion, force;  ///< of the force pass: positions with radii, velocities, contact forces
+  std::vector<Row> place, motion, force, viscous;  ///< of the force pass: positions with radii, velocities, contact
+                                                   ///< forces and their viscous parts
   std::shared_ptr<ThreadTeam> team;
 };
 
