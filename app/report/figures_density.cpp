@@ -72,7 +72,7 @@ Range shown_range(const ReportInput& input) {
 
 Panel density_panel(const char* label, const Range& range) {
   Panel panel;
-  panel.x.label = notation("volume fraction {ν}");
+  panel.x.label = notation("volume fraction {ν} [–]");
   panel.x.from = range.from - 0.005;
   panel.x.to = range.to + 0.005;
   panel.y.label = notation(label);

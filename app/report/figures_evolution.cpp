@@ -48,7 +48,7 @@ Figure residual_figure(const ReportInput& input) {
     for (const auto& [quantity, symbol] : kQuantities) {
       Panel panel;
       panel.title = notation(symbol);
-      panel.x.label = notation("volume fraction {ν} at the start");
+      panel.x.label = notation("volume fraction {ν} at the start [–]");
       panel.y.label = plain(bias ? "bias/max|DEM| [%]" : "RMS/max|DEM| [%]");
       panel.y.include = 0;
       panel.zero_line = true;

@@ -127,8 +127,11 @@ Panel difference_panel(const PredictionFolder& prediction, const std::vector<Tes
   panel.y.label = notation(quantity.difference);
   panel.y.include = 0;
   panel.zero_line = true;
+  const bool from_law =
+      std::any_of(prediction.curves.begin(), prediction.curves.end(),
+                  [](const PredictedCurve& drawn) { return drawn.seed && drawn.initial == Initial::law; });
   for (const PredictedCurve& drawn : prediction.curves) {
-    if (!drawn.seed) continue;
+    if (!drawn.seed || (from_law && drawn.initial != Initial::law)) continue;
     for (const TestRecord& test : dem) {
       if (test.packing.seed == *drawn.seed) panel.series.push_back(difference_line(drawn, test, quantity, abscissa));
     }
@@ -155,9 +158,9 @@ Figure prediction_figure(const PredictionFolder& prediction, std::size_t index) 
   figure.caption =
       dem.empty() ? plain("No DEM run of this path; grainlaw predict with --dem makes them.")
                   : plain("DEM on packings that the calibration never saw (" + seed_count(dem) +
-                          "). Below: the law minus DEM, row by row, a thin line for each run; its ripple is that of "
-                          "the packing.");
-  for (const PredictedCurve& drawn : prediction.curves) figure.sources.push_back(in_folder(prediction, drawn.file));
+                          "). Below: the law, from its own start where there is one, minus DEM, row by row, a thin "
+                          "line for each run.");
+  figure.sources = {in_folder(prediction, "prediction.json"), in_folder(prediction, "*.csv")};
   if (!dem.empty()) figure.sources.push_back(in_folder(prediction, "dem/"));
   figure.columns = 3;
   figure.panel_height = dem.empty() ? 250 : 210;

@@ -72,7 +72,7 @@ Figure preparation_quality_figure(const ReportInput& input) {
   if (!(lowest < highest)) lowest = 0, highest = 1;
   Figure figure = quality_figure("quality-isotropic",
                                  "Kinetic energy, energy balance and inertial number on the isotropic branches",
-                                 "volume fraction {ν}", lowest, highest);
+                                 "volume fraction {ν} [–]", lowest, highest);
   figure.description =
       "Three panels over volume fraction with logarithmic ordinates: ratio of kinetic to potential energy, magnitude "
       "of the "

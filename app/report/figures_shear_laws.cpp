@@ -51,8 +51,8 @@ Series per_run_points(const ReportInput& input, Mode mode, const Quantity20& qua
 Series steady_means(const ReportInput& input, const Quantity20& quantity) {
   Series series;
   series.label = plain("DEM, steady mean");
-  series.colour = Colour::sky;
-  series.marker = Marker::plus;
+  series.colour = Colour::green;
+  series.marker = Marker::cross;
   for (const fit::ShearFit& shear : input.calibration.shear) {
     series.x.push_back(shear.nu);
     series.y.push_back(shear.*quantity.steady_mean);
@@ -99,7 +99,7 @@ Figure shear_law_figure(const ReportInput& input) {
   }
   for (const Quantity20& quantity : quantities) {
     Panel panel;
-    panel.x.label = notation("volume fraction {ν}");
+    panel.x.label = notation("volume fraction {ν} [–]");
     panel.y.label = notation(quantity.label);
     panel.y.include = 0;
     for (const Mode mode : {Mode::D2, Mode::D3}) {

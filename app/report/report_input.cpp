@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/digest.hpp"
 #include "app/files/calibration_file.hpp"
 #include "app/files/parameters_file.hpp"
 #include "model/error.hpp"
@@ -52,7 +53,7 @@ void add_dataset(Dataset dataset, const std::string& expected_digest, ReportInpu
     input.warnings.push_back(
         "parameters.json was fitted to another data set than the one in dataset/ (digests differ).");
   }
-  input.provenance.push_back({"digest of the data set", dataset.digest, "dataset/dataset.json"});
+  input.provenance.push_back({"digest of the data set", dataset.digest, {"dataset/dataset.json"}});
   add_facts(dataset.provenance, "", "dataset/dataset.json", input.provenance);
   add_facts(dataset.spec, "spec.", "dataset/dataset.json", input.provenance);
   for (DatasetTest& test : dataset.tests) {
@@ -79,10 +80,16 @@ ReportInput read_report_input(const fs::path& dir) {
   add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.dataset_digest, input);
   add_facts(parameters.provenance, "", "parameters.json", input.provenance);
 
+  const std::string digest = sha256_of_file(dir / "parameters.json");
   for (const fs::path& folder : prediction_folders(dir, predict_into + "NAME")) {
     const std::string name = folder.filename().string();
     require_file(folder / "prediction.json", predict_into + name);
     input.predictions.push_back(with_remedy(predict_into + name, [&] { return read_prediction(folder); }));
+    const Json& used = input.predictions.back().parameters;
+    if (used.is_object() && used.value("sha256", digest) != digest) {
+      input.warnings.push_back("predictions/" + name +
+                               " was made with other parameters than those of parameters.json.");
+    }
     add_facts(input.predictions.back().provenance, "", "predictions/" + name + "/prediction.json", input.provenance);
   }
   return input;
@@ -121,7 +128,13 @@ void add_facts(const Json& document, const std::string& prefix, const std::strin
   }
   const std::string value = document.is_string() ? document.get<std::string>()
                                                  : document.dump(-1, ' ', false, Json::error_handler_t::replace);
-  facts.push_back({prefix, value, file});
+  const auto known = std::find_if(facts.begin(), facts.end(),
+                                  [&](const Fact& fact) { return fact.what == prefix && fact.value == value; });
+  if (known != facts.end()) {
+    known->files.push_back(file);
+  } else {
+    facts.push_back({prefix, value, {file}});
+  }
 }
 
 }  // namespace grainlaw::app::report

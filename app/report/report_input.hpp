@@ -12,9 +12,10 @@
 
 namespace grainlaw::app::report {
 
-/// A line "what: value" of the provenance table, and the file that says so.
+/// A line "what: value" of the provenance table, and the files that say so.
 struct Fact {
-  std::string what, value, file;
+  std::string what, value;
+  std::vector<std::string> files;
 };
 
 struct ReportInput {
@@ -38,7 +39,8 @@ bool has_values(const fit::Calibration& calibration, std::string_view group);
 /// The DEM runs of a prediction; empty when it was made without --dem.
 std::vector<TestRecord> dem_records(const PredictionFolder& prediction);
 
-/// `document` as lines "outer.inner: value", arrays on one line, null left out.
+/// `document` as lines "outer.inner: value", arrays on one line, null left out. A line that is there already only
+/// gains a file.
 void add_facts(const Json& document, const std::string& prefix, const std::string& file, std::vector<Fact>& facts);
 
 }  // namespace grainlaw::app::report

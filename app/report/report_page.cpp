@@ -124,7 +124,8 @@ Page make_page(const ReportInput& input) {
                            {figure_html(preparation_quality_figure(input)), figure_html(shear_quality_figure(input))}});
   page.sections.push_back({"provenance",
                            "Provenance and cost",
-                           {table_html(provenance_table(input)), folded("All runs", table_html(run_table(input)))}});
+                           {table_html(cost_table(input)), table_html(provenance_table(input)),
+                            folded("All runs", table_html(run_table(input)))}});
   return page;
 }
 

@@ -297,12 +297,44 @@ Table run_table(const ReportInput& input) {
   return table;
 }
 
+Table cost_table(const ReportInput& input) {
+  Table table;
+  table.caption = "What the DEM runs cost";
+  table.columns = {words(plain("files")), quantity(plain("tests")), quantity(plain("time steps")),
+                   quantity(plain("particle-steps")), quantity(plain("seconds, all runs together"))};
+  const auto add = [&](const std::string& files, std::size_t count, const auto& test_of, const auto& cost_of) {
+    double steps = 0, work = 0, seconds = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const RunCost& cost = cost_of(i);
+      steps += static_cast<double>(cost.steps);
+      work += static_cast<double>(cost.steps) * static_cast<double>(test_of(i).packing.particles);
+      seconds += cost.seconds;
+    }
+    table.rows.push_back({plain(files), plain(std::to_string(count)), number(steps), number(work), number(seconds)});
+  };
+  add(
+      "dataset/", input.tests.size(), [&](std::size_t i) -> const TestRecord& { return input.tests[i]; },
+      [&](std::size_t i) -> const RunCost& { return input.costs[i]; });
+  for (const PredictionFolder& prediction : input.predictions) {
+    if (!prediction.dem) continue;
+    const auto& tests = prediction.dem->tests;
+    add(
+        "predictions/" + prediction.name + "/dem/", tests.size(),
+        [&](std::size_t i) -> const TestRecord& { return tests[i].record; },
+        [&](std::size_t i) -> const RunCost& { return tests[i].cost; });
+  }
+  return table;
+}
+
 Table provenance_table(const ReportInput& input) {
   Table table;
   table.caption = "Where this comes from";
-  table.columns = {words(plain("what")), words(plain("value")), words(plain("file"))};
-  for (const Fact& fact : input.provenance)
-    table.rows.push_back({plain(fact.what), plain(fact.value), plain(fact.file)});
+  table.columns = {words(plain("what")), words(plain("value")), words(plain("said by"))};
+  for (const Fact& fact : input.provenance) {
+    std::string files;
+    for (const std::string& file : fact.files) files += (files.empty() ? "" : ", ") + file;
+    table.rows.push_back({plain(fact.what), plain(fact.value), plain(files)});
+  }
   return table;
 }
 

@@ -24,6 +24,8 @@ Table prediction_table(const PredictionFolder& prediction);
 Table solver_table(const std::vector<PredictionFolder>& predictions);
 /// Per run: seed, particles, rows, steps, seconds, largest energy ratio, energy residual and inertial number.
 Table run_table(const ReportInput& input);
+/// Steps, particle-steps and seconds of the data set and of each prediction's runs.
+Table cost_table(const ReportInput& input);
 Table provenance_table(const ReportInput& input);
 
 /// The value of an estimate with its error, or its status in words.

@@ -205,8 +205,8 @@ inline app::report::ReportInput report_scene() {
   c.stages = {density_laws, evolution};
   input.predictions = {make_prediction("uniaxial-0.695", 0.695, p, generator),
                        make_prediction("uniaxial-0.728", 0.728, p, generator)};
-  input.provenance = {{"grainlaw", "0.1.0", "parameters.json"},
-                      {"command", "grainlaw calibrate spec.json -o DIR", "parameters.json"}};
+  input.provenance = {{"grainlaw", "0.1.0", {"parameters.json"}},
+                      {"command", "grainlaw calibrate spec.json -o DIR", {"parameters.json"}}};
   return input;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -100,10 +101,21 @@ TEST_F(ReportFolder, OnePageWithEveryFigureAndNothingFromOutside) {
   EXPECT_EQ(count(html, "http"), count(html, "http://www.w3.org/2000/svg") + count(html, "http-equiv"));
 }
 
+/// How often `word` stands by itself, not inside a longer word.
+int count_words(const std::string& text, const std::string& word) {
+  const auto letter = [&](std::size_t i) {
+    return i < text.size() && std::isalpha(static_cast<unsigned char>(text[i])) != 0;
+  };
+  int n = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    if ((at == 0 || !letter(at - 1)) && !letter(at + word.size())) ++n;
+  }
+  return n;
+}
+
 TEST_F(ReportFolder, NoNumberOfThePageIsUndefined) {
   const std::string html = page();
-  for (const char* word : {"nan", "NaN", "inf\"", "inf ", "inf,", ">inf", "Infinity"})
-    EXPECT_EQ(count(html, word), 0) << word;
+  for (const char* word : {"nan", "NaN", "inf", "Infinity"}) EXPECT_EQ(count_words(html, word), 0) << word;
 }
 
 TEST_F(ReportFolder, EveryMissingFileNamesTheCommandThatMakesIt) {
@@ -136,7 +148,7 @@ TEST_F(ReportFolder, ParametersThatAreNotIdentifiedAreWordsAndDrawNoCurve) {
   EXPECT_EQ(test::first_markup_error(html), "");
   EXPECT_NE(html.find("Eq. 20 not identified by these tests"), std::string::npos);
   EXPECT_NE(summary_table(dir_).find("not identified"), std::string::npos);
-  EXPECT_EQ(count(html, "nan"), 0);
+  EXPECT_EQ(count_words(html, "nan"), 0);
 }
 
 TEST_F(ReportFolder, TheSummaryIsARectangleOfText) {
