@@ -15,7 +15,7 @@ namespace grainlaw::dem {
 
 /// Energies since the ledger was opened [J]. W_box - D_contact - D_background = change of E_pot + E_kin.
 struct Ledger {
-  double W_box = 0;         ///< work of the box on the spheres, dW = -V sigma : L dt (tension-positive virial)
+  double W_box = 0;         ///< work of the box on the spheres, dW = -V sigma : L dt, sigma compression positive
   double D_contact = 0;     ///< dissipated by contact viscosity, >= 0
   double D_background = 0;  ///< dissipated by background drag, >= 0
   double E_start = 0;       ///< E_pot + E_kin when the ledger was opened
