@@ -1,0 +1,20 @@
+// D9 at N = 1000 and three densities: the residual of the energy balance over the dissipation. The quick version and
+// the description are in tests/verification/dem/energy_balance_test.cpp.
+
+#include <gtest/gtest.h>
+
+#include "tests/support/dem_compression.hpp"
+#include "tests/support/figure.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+TEST(EnergyBalanceLong, D9ThousandSpheresAtThreeDensities) {
+  for (const double nu : {0.70, 0.75, 0.82}) {
+    const scene::EnergyAccount account = scene::compress_several(1000, nu, 3, 50);
+    testing::figure(fmt::format("D9.nu{:.2f}.N1000", nu), account.residual_over_lost(), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace grainlaw::dem
