@@ -8,6 +8,7 @@
 
 #include "app/atomic_write.hpp"
 #include "app/files/preparation_json.hpp"
+#include "app/files/series_csv.hpp"
 #include "app/job_list.hpp"
 #include "app/output_folder.hpp"
 #include "app/runs.hpp"
@@ -109,7 +110,9 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
     test.cost = cost_from_record(record);
     for (const Json& warning : record.at("warnings")) test.warnings.push_back(warning);
     const std::string series = planned.branch_of_preparation ? to_string(planned.path.branch) : "series";
-    copy_atomically(store.folder(test.run) / (series + ".csv"), folder / (planned.name + ".csv"));
+    const fs::path file = folder / (planned.name + ".csv");
+    copy_atomically(store.folder(test.run) / (series + ".csv"), file);
+    test.record.rows = read_series(file, planned.path, test.record.packing);
     stale.erase(planned.name);
     const std::uint64_t seed = planned.preparation.packing.seed;
     if (std::find(dataset.seeds.begin(), dataset.seeds.end(), seed) == dataset.seeds.end()) dataset.seeds.push_back(seed);
@@ -120,7 +123,7 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
   for (const std::string& name : stale) {
     if (is_safe_name(name)) fs::remove(folder / (name + ".csv"));
   }
-  return read_dataset(folder);
+  return dataset;
 }
 
 }  // namespace grainlaw::app

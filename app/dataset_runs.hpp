@@ -30,7 +30,7 @@ struct RunCounts {
 };
 
 /// Runs what is not in the store yet, copies the series to `folder` and writes dataset.json there last; series that an
-/// earlier dataset.json listed and this one does not are removed. Returns what read_dataset then reads.
+/// earlier dataset.json listed and this one does not are removed. Returns what read_dataset would read there.
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const std::filesystem::path& folder,
                     const RunStore& store, Session& session, RunCounts& counts);
 

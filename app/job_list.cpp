@@ -104,7 +104,7 @@ class Schedule {
 void run_jobs(const std::vector<Job>& jobs, int threads, ProgressPrinter& progress, const std::stop_token& stop) {
   std::vector<double> work;
   for (const Job& job : jobs) work.push_back(job.work);
-  progress.begin(work);
+  progress.begin(work, "particle-steps");
   try {
     Schedule(jobs, threads, progress, stop).run();
   } catch (...) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/one_line.hpp"
 
@@ -33,9 +34,10 @@ std::string clock_text(double seconds) {
 
 ProgressPrinter::ProgressPrinter(std::FILE* out, bool quiet) : out_(out), quiet_(quiet), terminal_(isatty(fileno(out)) == 1) {}
 
-void ProgressPrinter::begin(const std::vector<double>& work) {
+void ProgressPrinter::begin(const std::vector<double>& work, std::string unit) {
   const std::lock_guard lock(mutex_);
   jobs_.assign(work.size(), {});
+  unit_ = std::move(unit);
   for (std::size_t i = 0; i < work.size(); ++i) {
     jobs_[i].expected = work[i];
     jobs_[i].done = work[i] == 0;
@@ -58,8 +60,8 @@ void ProgressPrinter::report(std::size_t index, const Progress& progress) {
     job.stage = progress.stage;
   }
   // only what was planned for counts: passes of a minimiser, for one, are no particle-steps
-  job.current = progress.unit == "particle-steps" ? progress.work : 0;
-  unit_ = "particle-steps";
+  job.current = progress.unit == unit_ ? progress.work : 0;
+  job.fraction = progress.fraction;
   if (seconds_since(printed_) >= (terminal_ ? kTerminalInterval : kLogInterval)) print();
 }
 
@@ -72,6 +74,10 @@ void ProgressPrinter::finished(std::size_t index) {
 }
 
 std::string ProgressPrinter::status() const {
+  if (unit_.empty()) {
+    const Job& job = jobs_.front();
+    return fmt::format("{}: {:3.0f} %{}", job.name, 100 * job.fraction, job.stage.empty() ? "" : fmt::format(" of {}", job.stage));
+  }
   double expected = 0, covered = 0, worked = 0;
   std::size_t done = 0;
   std::string running;

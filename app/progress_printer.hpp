@@ -16,8 +16,9 @@ class ProgressPrinter {
  public:
   ProgressPrinter(std::FILE* out, bool quiet);
 
-  /// Starts a new list: `work` is what each job is expected to do, e.g. particle-steps; 0 for jobs that are done already.
-  void begin(const std::vector<double>& work);
+  /// Starts a new list: `work` is what each job is expected to do in `unit`, 0 for jobs that are done already. Without a
+  /// unit only the fraction that a job reports counts.
+  void begin(const std::vector<double>& work, std::string unit);
 
   /// What the job with this index in the list is to report to.
   RunControl control(std::size_t job, std::string name, std::stop_token stop);
@@ -35,6 +36,7 @@ class ProgressPrinter {
     double expected = 0;     // work of the whole job
     double before = 0;       // work of its stages that are over
     double current = 0;      // work of the current stage
+    double fraction = 0;     // of the current stage
     std::string stage;
     bool running = false, done = false;
   };

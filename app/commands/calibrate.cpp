@@ -61,10 +61,16 @@ std::vector<TestRecord> calibration_tests(const std::vector<PlannedTest>& planne
   return tests;
 }
 
+/// One line for all: dataset.json has them by test.
 void log_warnings(const Dataset& dataset, Session& session) {
+  std::size_t tests = 0;
+  std::string first;
   for (const DatasetTest& test : dataset.tests) {
-    for (const std::string& warning : test.warnings) session.progress.log(fmt::format("warning: {}: {}", test.record.name, warning));
+    if (test.warnings.empty()) continue;
+    if (first.empty()) first = fmt::format("{}: {}", test.record.name, test.warnings.front());
+    ++tests;
   }
+  if (tests > 0) session.progress.log(fmt::format("warning: {} of {} tests have warnings (listed in dataset.json), e.g. {}", tests, dataset.tests.size(), first));
 }
 
 std::string summary_of(const fs::path& output, const Dataset& dataset, bool converged, const RunCounts& counts, const Session& session) {
@@ -86,7 +92,7 @@ std::string summary_of(const fs::path& output, const Dataset& dataset, bool conv
 }
 
 ExitCode fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output, const RunCounts& counts, Session& session) {
-  session.progress.begin({1});
+  session.progress.begin({1}, "");
   const fit::Calibration calibration =
       fit::calibrate(calibration_tests(dataset), options, session.progress.control(0, "fit", session.stop));
   session.progress.end();

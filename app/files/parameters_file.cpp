@@ -40,6 +40,15 @@ void read_covariance(const Json& object, Eigen::MatrixXd& covariance) {
   }
 }
 
+/// True for the alpha of an Eq. (20) whose Q_c is zero: the law does not depend on it.
+bool without_exponential(const ParametersFile& parameters, std::size_t alpha) {
+  const std::string name = parameter_table()[alpha].name;
+  const std::string group = name.substr(0, name.find('.'));
+  if (group == "coordination") return false;
+  const std::size_t Q_c = parameter_index(group + ".Q_c");
+  return parameters.calibration.estimates[Q_c].status != fit::Status::not_identified && *fields(parameters.calibration.parameters)[Q_c] == 0;
+}
+
 }  // namespace
 
 void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters) {
@@ -125,7 +134,8 @@ void require_parameters(const ParametersFile& parameters, predict::Model model, 
     for (const std::string& group : needed) {
       if (parameter != group && !parameter.starts_with(group + ".")) continue;
       const fit::Estimate& estimate = parameters.calibration.estimates[i];
-      if (estimate.status == fit::Status::not_identified) {
+      const bool read = !parameter.ends_with(".alpha") || !without_exponential(parameters, i);
+      if (read && estimate.status == fit::Status::not_identified) {
         throw InvalidInput(fmt::format("{}: parameters.{}: is not identified and the {} model needs it{}{}; calibrate with tests that contain it",
                                        name, parameter, to_string(model), estimate.note.empty() ? "" : ": ", estimate.note));
       }

@@ -34,6 +34,9 @@ OrderedJson curve_to_json(const PredictedCurve& curve) {
   object["file"] = curve.file;
   object["rows"] = curve.prediction.rows.size();
   object["unjammed"] = curve.prediction.unjammed;
+  if (curve.prediction.unjammed) {
+    object["unjammed_at"] = {{"segment", curve.prediction.unjammed_at.segment}, {"e", curve.prediction.unjammed_at.e}};
+  }
   object["warnings"] = curve.prediction.warnings;
   object["solver"] = {{"steps", s.steps},
                       {"rhs_evaluations", s.rhs_evaluations},
@@ -51,6 +54,10 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
   if (!is_safe_name(curve.file)) throw InvalidInput(fmt::format("file: '{}' is no name of a file", one_line(curve.file, 60)));
   curve.prediction.model = curve.model;
   curve.prediction.unjammed = object.at("unjammed");
+  if (curve.prediction.unjammed) {
+    const Json& at = object.at("unjammed_at");
+    curve.prediction.unjammed_at = {at.at("segment"), at.at("e")};
+  }
   curve.prediction.warnings = object.at("warnings").get<std::vector<std::string>>();
   const Json& s = object.at("solver");
   curve.prediction.statistics = {s.at("steps"), s.at("rhs_evaluations"), s.at("error_test_failures"), s.at("nonlinear_iterations"),

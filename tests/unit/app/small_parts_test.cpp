@@ -1,0 +1,92 @@
+// one_line, digest, atomic_write, output_folder: parts of a few lines each.
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "app/atomic_write.hpp"
+#include "app/digest.hpp"
+#include "app/one_line.hpp"
+#include "app/output_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+using testing::refusal;
+namespace fs = std::filesystem;
+
+TEST(OneLine, EscapesControlCharactersAndBoundsLength) {
+  EXPECT_EQ(one_line("a\nb\x1b[31m\x7f"), "a\\x0ab\\x1b[31m\\x7f");
+  EXPECT_EQ(one_line("é"), "é");
+  EXPECT_EQ(one_line(std::string(100, 'x'), 5), "xxxxx...");
+}
+
+TEST(Digest, IsSha256) {
+  // FIPS 180-4, examples of one block and of the empty message
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+using Files = testing::TemporaryFolder;
+
+TEST_F(Files, DigestOfAFileIsThatOfItsBytes) {
+  const std::string bytes(200000, 'x');
+  EXPECT_EQ(sha256_of_file(put("f", bytes)), sha256(bytes));
+  EXPECT_THROW(sha256_of_file(folder_ / "none"), Error);
+}
+
+TEST_F(Files, AreReplacedWhole) {
+  put("f", "old");
+  write_atomically(folder_ / "f", "new content");
+  EXPECT_EQ(content(folder_ / "f"), "new content");
+  copy_atomically(folder_ / "f", folder_ / "g");
+  EXPECT_EQ(content(folder_ / "g"), "new content");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 2);
+}
+
+TEST_F(Files, AreNotWrittenThroughLinks) {
+  put("victim", "untouched");
+  fs::create_symlink(folder_ / "victim", folder_ / "f");
+  write_atomically(folder_ / "f", "ours");
+  EXPECT_EQ(content(folder_ / "victim"), "untouched");
+  EXPECT_FALSE(fs::is_symlink(folder_ / "f"));
+}
+
+// Hard case R8: a write that fails leaves the earlier file and nothing else.
+TEST_F(Files, SurviveAFailingWrite) {
+  put("f", "old");
+  const auto earlier = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{}, small{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  small = limit;
+  small.rlim_cur = 1000;
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(write_atomically(folder_ / "f", std::string(100000, 'x')), Error);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, earlier);
+  EXPECT_EQ(content(folder_ / "f"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 1);
+  EXPECT_THROW(write_atomically(folder_ / "none" / "f", "x"), Error);
+}
+
+// Hard case S6.
+TEST_F(Files, KeepOutputInItsFolder) {
+  for (const char* name : {"a", "UNI-0.695", "a_b.c", "0"}) EXPECT_TRUE(is_safe_name(name)) << name;
+  for (const char* name : {"", ".", "..", ".hidden", "-x", "a/b", "../x", "/etc", "a\nb", "a b", "é"}) EXPECT_FALSE(is_safe_name(name)) << name;
+  EXPECT_FALSE(is_safe_name(std::string(101, 'a')));
+
+  fs::create_directory(folder_ / "out");
+  fs::create_directory(folder_ / "elsewhere");
+  fs::create_directory_symlink(folder_ / "elsewhere", folder_ / "out" / "runs");
+  EXPECT_NE(refusal([&] { make_subfolder(folder_ / "out", "runs"); }).find("symbolic link"), std::string::npos);
+  EXPECT_NE(refusal([&] { make_subfolder(folder_ / "out", "../x"); }).find("no name"), std::string::npos);
+  put("out/file", "");
+  EXPECT_NE(refusal([&] { make_subfolder(folder_ / "out", "file"); }).find("is a file"), std::string::npos);
+  EXPECT_NE(refusal([&] { make_output_folder(folder_ / "out" / "file"); }).find("is not a folder"), std::string::npos);
+  EXPECT_TRUE(fs::is_empty(folder_ / "elsewhere"));
+  EXPECT_EQ(make_subfolder(folder_ / "out", "dataset"), folder_ / "out" / "dataset");
+  EXPECT_EQ(make_subfolder(folder_ / "out", "dataset"), folder_ / "out" / "dataset");
+}
+
+}  // namespace
+}  // namespace grainlaw::app
