@@ -1,0 +1,32 @@
+#pragma once
+// The law's curves over volume fraction, ours beside the published ones (Tables 2 and 3 of the paper through Eqs. 11,
+// 12, 14, 20). Curves are compared, not parameters: those of Eqs. (11) and (12) scatter hugely at equal curves.
+
+#include <string>
+#include <vector>
+
+#include "model/parameters.hpp"
+
+namespace grainlaw {
+
+struct DensityCurve {
+  const char* quantity;             ///< name in files, e.g. "C_star", "stress_ratio_max"
+  std::vector<const char*> groups;  ///< parameters that it reads: names in parameter_table() up to their dot
+  double (*of)(const LawParameters<double>&, double nu);  ///< value at volume fraction nu [-]
+};
+
+/// C_star, rattler_fraction, P_star of ISO unloading and (steady_...) of steady D2; stress_ratio_max, stress_rate,
+/// fabric_max, fabric_rate.
+const std::vector<DensityCurve>& density_curves();
+
+struct CurvePoint {
+  const DensityCurve* curve = nullptr;
+  double nu = 0;         ///< volume fraction [-]
+  double ours = 0;       ///< from the given parameters [-]
+  double published = 0;  ///< from the published parameters [-]
+};
+
+/// Every curve at every multiple of `step` within [nu_min, nu_max] (to rounding), curve by curve.
+std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, double nu_min, double nu_max, double step = 0.02);
+
+}  // namespace grainlaw
