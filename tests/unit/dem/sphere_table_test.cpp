@@ -118,7 +118,7 @@ TEST_F(SphereTable, RefusesABrokenRow) {
   EXPECT_REFUSED(header + "1,0.005,0,0,0.001\n", "row 3, column id", "already in row 2");
   EXPECT_REFUSED(header + "2,0,0,0,0\n", "row 3, column r", "not positive");
   EXPECT_REFUSED(header + "2,0,0,0,-0.001\n", "row 3, column r", "not positive");
-  EXPECT_REFUSED(header + std::string("2,0,0,0,0.0\0001\n", 16), "row 3", "NUL");
+  EXPECT_REFUSED(header + std::string("2,0,0,0,0.0\0001\n", 14), "row 3", "NUL");
   EXPECT_REFUSED(header + "\n2,0,0,0,0.001\n", "row 4", "empty row");
   EXPECT_REFUSED(header + "2,1e6,0,0,0.001\n", "row 3", "metres");
   EXPECT_REFUSED(header + std::string(1'100'000, '1') + "\n", "row 3", "1 MB");
