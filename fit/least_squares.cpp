@@ -30,8 +30,9 @@ constexpr int kIterationsPerRound = 8, kRounds = 60;
 /// All blocks as one cost function of x/scale.
 class Blocks : public ceres::CostFunction {
  public:
-  Blocks(const std::vector<ResidualBlock>& blocks, Eigen::VectorXd scale, int threads)
-      : blocks_(blocks), scale_(std::move(scale)), threads_(threads) {
+  /// Weighted misfits are divided by `unit`, so that the solver's tolerances are relative.
+  Blocks(const std::vector<ResidualBlock>& blocks, Eigen::VectorXd scale, double unit, int threads)
+      : blocks_(blocks), scale_(std::move(scale)), unit_(unit), threads_(threads) {
     for (const ResidualBlock& block : blocks_) {
       first_row_.push_back(rows_);
       rows_ += block.rows();
@@ -46,14 +47,14 @@ class Blocks : public ceres::CostFunction {
     if (!misfit(x, residuals, jacobian)) return false;
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
       const Eigen::VectorXd& w = blocks_[b].weight;
-      Eigen::Map<Eigen::VectorXd>(residuals + first_row_[b], w.size()).array() *= w.array();
+      Eigen::Map<Eigen::VectorXd>(residuals + first_row_[b], w.size()).array() *= w.array() / unit_;
     }
     if (jacobian != nullptr) {
       Eigen::Map<RowMajor> J(jacobian, rows_, scale_.size());
       J = J * scale_.asDiagonal();
       for (std::size_t b = 0; b < blocks_.size(); ++b) {
         const Eigen::VectorXd& w = blocks_[b].weight;
-        J.middleRows(first_row_[b], w.size()).array().colwise() *= w.array();
+        J.middleRows(first_row_[b], w.size()).array().colwise() *= w.array() / unit_;
       }
     }
     return true;
@@ -99,6 +100,7 @@ class Blocks : public ceres::CostFunction {
  private:
   const std::vector<ResidualBlock>& blocks_;
   Eigen::VectorXd scale_;
+  double unit_;
   int threads_;
   int rows_ = 0;
   std::vector<int> first_row_;
@@ -117,16 +119,21 @@ class StopOnRequest : public ceres::IterationCallback {
   const RunControl& control_;
 };
 
-/// Ceres also reports success when its trust region has shrunk to nothing. A minimum is one when the weighted residual
-/// is orthogonal to every column of J whose parameter is free to move.
-bool is_minimum(const Solution& solution, const std::vector<ResidualBlock>& blocks, const std::vector<int>& held) {
-  double data = 0;
+/// Norm of the weighted data, an upper estimate.
+double data_norm(const std::vector<ResidualBlock>& blocks) {
+  double square = 0;
   for (const ResidualBlock& block : blocks) {
     for (const Channel& c : block.channels)
-      data += (block.weight.segment(c.first, c.rows) * c.max_abs_data).squaredNorm();
+      square += (block.weight.segment(c.first, c.rows) * c.max_abs_data).squaredNorm();
   }
+  return square > 0 ? std::sqrt(square) : 1;
+}
+
+/// Ceres also reports success when its trust region has shrunk to nothing. A minimum is one when the weighted residual
+/// is orthogonal to every column of J whose parameter is free to move.
+bool is_minimum(const Solution& solution, double unit, const std::vector<int>& held) {
   const Eigen::VectorXd r = solution.weight.cwiseProduct(solution.misfit);
-  if (r.squaredNorm() <= kExact * kExact * data) return true;
+  if (r.norm() <= kExact * unit) return true;
   for (Eigen::Index k = 0; k < solution.x.size(); ++k) {
     if (std::find(held.begin(), held.end(), static_cast<int>(k)) != held.end()) continue;
     const Eigen::VectorXd column = solution.weight.cwiseProduct(solution.jacobian.col(k));
@@ -162,8 +169,8 @@ ceres::Solver::Options solver_options(ceres::IterationCallback* callback) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = kIterationsPerRound;
-  options.function_tolerance = 1e-14;
-  options.gradient_tolerance = 1e-14;
+  options.function_tolerance = 1e-16;
+  options.gradient_tolerance = 1e-16;
   options.parameter_tolerance = 1e-12;
   // No line search along projected steps: it shortens a step where the trust region would turn it.
   options.max_num_line_search_step_size_iterations = 0;
@@ -190,6 +197,27 @@ void evaluate(const Blocks& cost, const Eigen::VectorXd& z, const std::vector<Fr
   solution.misfit.resize(solution.weight.size());
   solution.defined = cost.misfit(solution.x, solution.misfit.data(), jacobian.data());
   solution.jacobian = jacobian;
+}
+
+/// A few iterations from `z` with the parameters `held` taken out.
+ceres::Solver::Summary solve_round(Blocks& cost, const std::vector<FreeParameter>& parameters,
+                                   const std::vector<int>& held, double radius, StopOnRequest& stop,
+                                   Eigen::VectorXd& z) {
+  ceres::Problem::Options keep;
+  keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(keep);
+  problem.AddResidualBlock(&cost, nullptr, z.data());
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const FreeParameter& p = parameters[k];
+    problem.SetParameterLowerBound(z.data(), static_cast<int>(k), p.lower / p.scale);
+    problem.SetParameterUpperBound(z.data(), static_cast<int>(k), p.upper / p.scale);
+  }
+  if (!held.empty()) problem.SetManifold(z.data(), new ceres::SubsetManifold(static_cast<int>(z.size()), held));
+  ceres::Solver::Options options = solver_options(&stop);
+  options.initial_trust_region_radius = radius;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  return summary;
 }
 
 }  // namespace
@@ -225,55 +253,39 @@ Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<R
 
   // Ceres projects steps into the box but does not hold a parameter there, which makes the others crawl. Parameters that
   // a bound holds back are therefore taken out between rounds, and let go again when the cost no longer pushes.
-  Blocks cost(blocks, scale, threads);
+  const double unit = data_norm(blocks);
+  Blocks cost(blocks, scale, unit, threads);
   StopOnRequest stop(stage, control);
   evaluate(cost, z, parameters, solution);
-  std::vector<int> held;
-  if (solution.defined) held = held_by_bounds(solution, parameters);
+  if (!solution.defined) {
+    solution.termination = fmt::format("no finite value at the start: {} at {}", cost.offender(solution.x),
+                                       listed(parameters, solution.x));
+    return solution;
+  }
+  std::vector<int> held = held_by_bounds(solution, parameters);
   if (static_cast<Eigen::Index>(held.size()) == n) held.clear();
   double radius = 1e4;  // Ceres's own start
-  ceres::Solver::Summary summary;
   for (int round = 0; round < kRounds; ++round) {
-    ceres::Problem::Options keep;
-    keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(keep);
-    problem.AddResidualBlock(&cost, nullptr, z.data());
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const FreeParameter& p = parameters[static_cast<std::size_t>(k)];
-      problem.SetParameterLowerBound(z.data(), static_cast<int>(k), p.lower / p.scale);
-      problem.SetParameterUpperBound(z.data(), static_cast<int>(k), p.upper / p.scale);
-    }
-    if (!held.empty()) problem.SetManifold(z.data(), new ceres::SubsetManifold(static_cast<int>(n), held));
-    ceres::Solver::Options options = solver_options(&stop);
-    options.initial_trust_region_radius = radius;
-    ceres::Solve(options, &problem, &summary);
+    const ceres::Solver::Summary summary = solve_round(cost, parameters, held, radius, stop, z);
     if (control.stop.stop_requested()) throw Interrupted("fit: stopped on request in stage " + stage);
     if (!summary.iterations.empty()) radius = std::clamp(summary.iterations.back().trust_region_radius, 1e2, 1e8);
     solution.iterations += std::max(0, summary.num_successful_steps + summary.num_unsuccessful_steps);
-    if (round == 0) solution.initial_cost = summary.initial_cost;
+    if (round == 0) solution.initial_cost = summary.initial_cost * unit * unit;
     evaluate(cost, z, parameters, solution);
-    if (!solution.defined) break;
+    if (!solution.defined) throw Error("fit: stage " + stage + " has no finite value at its own solution");
     z = solution.x.cwiseQuotient(scale);
     const std::vector<int> next = held_by_bounds(solution, parameters);
-    const bool settled = summary.termination_type == ceres::CONVERGENCE && is_minimum(solution, blocks, next);
-    if (settled || static_cast<Eigen::Index>(next.size()) == n) {
-      held = next;
+    const bool settled = summary.termination_type == ceres::CONVERGENCE && is_minimum(solution, unit, next);
+    solution.final_cost = summary.final_cost * unit * unit;
+    solution.termination =
+        fmt::format("{}: {}", ceres::TerminationTypeToString(summary.termination_type), summary.message);
+    solution.converged = settled;
+    if (settled) break;
+    if (next == held && summary.termination_type == ceres::CONVERGENCE) {  // no better by trying again
+      solution.termination += " (but the gradient does not vanish)";
       break;
     }
-    if (next == held && summary.termination_type == ceres::CONVERGENCE) break;  // no better by trying again
     held = next;
-  }
-  solution.final_cost = summary.final_cost;
-  solution.termination =
-      fmt::format("{}: {}", ceres::TerminationTypeToString(summary.termination_type), summary.message);
-  if (!solution.defined) {
-    solution.termination +=
-        fmt::format(" (no finite value at {}: {})", cost.offender(solution.x), listed(parameters, solution.x));
-  }
-  solution.converged =
-      solution.defined && summary.termination_type == ceres::CONVERGENCE && is_minimum(solution, blocks, held);
-  if (solution.defined && summary.termination_type == ceres::CONVERGENCE && !solution.converged) {
-    solution.termination += " (but the gradient does not vanish)";
   }
   solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solution;

@@ -19,10 +19,12 @@
 
 namespace grainlaw::fit {
 
+inline const LawState<double> kNoState{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
+
 /// Row of a trajectory.
 struct TrajectoryRow {
   double e = 0;           ///< path parameter since the start of the trajectory [-]
-  LawState<double> data;  ///< measured
+  LawState<double> data = kNoState;  ///< measured
   double weight = 0;      ///< of its window, before division by the scale of a quantity
 };
 
@@ -31,7 +33,7 @@ struct Trajectory {
   int cluster = 0;
   int segment = 0;
   bool starts_on_law = false;          ///< P by Eq. (14) at nu_start, else all of `start`
-  LawState<double> start;              ///< measured
+  LawState<double> start = kNoState;  ///< measured
   double nu_start = 0;                 ///< [-]
   LawDirection direction;              ///< per unit of e
   std::vector<Deviator<double>> axes;  ///< orthonormal; deviators are compared along these, the first one is N of s_par

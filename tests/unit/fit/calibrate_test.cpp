@@ -1,0 +1,146 @@
+#include "fit/calibrate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "model/error.hpp"
+#include "tests/support/synthetic_dataset.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+testing::SyntheticOptions noisy() {
+  testing::SyntheticOptions options;
+  options.densities = {0.68, 0.70, 0.74, 0.80};
+  options.rows = 50;
+  options.noise_P = 0.005;
+  options.noise_s = 0.01;
+  options.noise_F = 0.005;
+  options.noise_C = 0.003;
+  options.noise_correlation = 0.9;
+  options.seed_scatter = 0.03;
+  return options;
+}
+
+const Estimate& estimate(const Calibration& c, const std::string& name) { return c.estimates[parameter_index(name)]; }
+
+TEST(Calibrate, AgreesWithItselfAboutEveryParameter) {
+  const Calibration c = calibrate(testing::synthetic_dataset(testing::synthetic_truth(), noisy()), {}, {});
+  EXPECT_TRUE(c.converged);
+  const auto value = fields(c.parameters);
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const Estimate& e = c.estimates[i];
+    const char* name = parameter_table()[i].name;
+    const bool has_error = std::isfinite(e.standard_error);
+    EXPECT_EQ(has_error, e.status == Status::fitted || e.status == Status::tied) << name << " " << e.note;
+    if (e.status != Status::not_identified)
+      EXPECT_EQ(e.value, *value[i]) << name;
+    else
+      EXPECT_FALSE(e.note.empty()) << name;
+    EXPECT_NEAR(c.covariance(k, k), has_error ? e.standard_error * e.standard_error : 0, 1e-12 * c.covariance(k, k))
+        << name;
+  }
+  EXPECT_NEAR((c.covariance - c.covariance.transpose()).norm(), 0, 1e-12 * c.covariance.norm());
+  EXPECT_EQ(estimate(c, "shear.nu_c").status, Status::fixed);
+  EXPECT_EQ(estimate(c, "anisotropy.a0").status, Status::not_identified);
+  EXPECT_EQ(estimate(c, "anisotropy.a1").status, Status::tied);
+  EXPECT_EQ(estimate(c, "anisotropy.a2").status, Status::fitted);
+  EXPECT_EQ(c.shear.size(), 8u);
+  EXPECT_NEAR(c.nu_min, 0.675, 2e-3);
+  EXPECT_NEAR(c.nu_max, 0.83, 1e-9);
+  EXPECT_NEAR(c.eps_dev_max, 0.30, 1e-9);
+}
+
+TEST(Calibrate, FindsTheCurvesOfANoisyTruthWithinItsErrors) {
+  const LawParameters<double> truth = testing::synthetic_truth();
+  const Calibration c = calibrate(testing::synthetic_dataset(truth, noisy()), {}, {});
+  const LawParameters<double>& p = c.parameters;
+  for (const double nu : {0.68, 0.70, 0.74, 0.80}) {
+    EXPECT_NEAR(p.isotropic.P_star(nu) / truth.isotropic.P_star(nu), 1, 0.02) << nu;
+    EXPECT_NEAR(p.isotropic.coordination.C_star(nu) / truth.isotropic.coordination.C_star(nu), 1, 0.005) << nu;
+    EXPECT_NEAR(p.stress_ratio_max.value(nu, p.shear_nu_c) / truth.stress_ratio_max.value(nu, truth.shear_nu_c), 1,
+                0.06)
+        << nu;
+    EXPECT_NEAR(p.fabric_max.value(nu, p.shear_nu_c) / truth.fabric_max.value(nu, truth.shear_nu_c), 1, 0.06) << nu;
+  }
+  const Estimate& a2 = estimate(c, "anisotropy.a2");
+  EXPECT_LT(std::abs(a2.value - truth.anisotropy.a2), 4 * a2.standard_error);
+  EXPECT_LT(a2.standard_error, 0.2);
+}
+
+TEST(Calibrate, StagesStandInTheirOrder) {
+  const Calibration c = calibrate(testing::synthetic_dataset(testing::synthetic_truth(), noisy()), {}, {});
+  std::vector<std::string> names;
+  for (const Stage& stage : c.stages) {
+    names.push_back(stage.name);
+    EXPECT_FALSE(stage.window.empty()) << stage.name;
+    EXPECT_FALSE(stage.tests.empty()) << stage.name;
+  }
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"coordination", "rattlers", "pressure", "overlap", "fabric_trace",
+                                      "steady_coordination", "steady_rattlers", "steady_pressure", "shear",
+                                      "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate", "evolution"}));
+}
+
+TEST(Calibrate, SingleCouplingKnowsOnlyA0) {
+  testing::SyntheticOptions options = noisy();
+  options.coupling = Coupling::single;
+  LawParameters<double> truth = testing::synthetic_truth();
+  truth.anisotropy.a0 = 1.4;
+  CalibrationOptions single;
+  single.coupling = Coupling::single;
+  const Calibration c = calibrate(testing::synthetic_dataset(truth, options), single, {});
+  const Estimate& a0 = estimate(c, "anisotropy.a0");
+  EXPECT_EQ(a0.status, Status::fitted);
+  EXPECT_LT(std::abs(a0.value - 1.4), 4 * a0.standard_error);
+  for (const char* name : {"anisotropy.a1", "anisotropy.a2"}) {
+    EXPECT_EQ(estimate(c, name).status, Status::not_identified);
+    EXPECT_NE(estimate(c, name).note.find("not part of the law"), std::string::npos);
+  }
+}
+
+TEST(Calibrate, OneSeedOneDensityRunsAndClaimsNothingItCannotKnow) {
+  testing::SyntheticOptions options = noisy();
+  options.densities = {0.72};
+  options.seeds = {5};
+  const Calibration c = calibrate(testing::synthetic_dataset(testing::synthetic_truth(), options), {}, {});
+  for (const char* name : {"pressure.p0", "coordination.C1"}) {
+    EXPECT_EQ(estimate(c, name).status, Status::fitted);
+    EXPECT_TRUE(std::isnan(estimate(c, name).standard_error));
+    EXPECT_NE(estimate(c, name).note.find("one run"), std::string::npos);
+  }
+  for (const char* name : {"stress_ratio_max.Q_c", "stress_rate.alpha", "fabric_max.Q_limit", "fabric_rate.Q_c",
+                           "steady_pressure.nu_c", "steady_coordination.C1"}) {
+    EXPECT_EQ(estimate(c, name).status, Status::not_identified) << name;
+  }
+}
+
+TEST(Calibrate, RefusesBeforeAnythingRuns) {
+  std::vector<TestRecord> tests = testing::synthetic_dataset(testing::synthetic_truth(), noisy());
+  tests[2].role = Role::validation;
+  EXPECT_THROW(calibrate(tests, {}, {}), InvalidInput);
+  CalibrationOptions options;
+  options.threads = 0;
+  tests[2].role = Role::calibration;
+  EXPECT_THROW(calibrate(tests, options, {}), InvalidInput);
+}
+
+TEST(Calibrate, CanBeStopped) {
+  const std::vector<TestRecord> tests = testing::synthetic_dataset(testing::synthetic_truth(), noisy());
+  std::stop_source source;
+  RunControl control;
+  control.stop = source.get_token();
+  std::set<std::string> stages;
+  control.report = [&](const Progress& progress) {
+    stages.insert(progress.stage);
+    if (progress.stage == "evolution") source.request_stop();
+  };
+  EXPECT_THROW(calibrate(tests, {}, control), Interrupted);
+  EXPECT_TRUE(stages.count("coordination") == 1 && stages.count("evolution") == 1);
+}
+
+}  // namespace
+}  // namespace grainlaw::fit

@@ -1,0 +1,110 @@
+#include "fit/covariance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace grainlaw::fit {
+namespace {
+
+/// Rows of a fitted mean: J = 1, misfit = mean - y.
+struct Mean {
+  Eigen::MatrixXd J;
+  Eigen::VectorXd misfit;
+  std::vector<int> cluster;
+};
+
+/// Runs that each repeat one number `rows` times: as correlated as rows can be.
+Mean mean_of(const std::vector<double>& run_value, int rows) {
+  Mean m;
+  const auto n = static_cast<Eigen::Index>(run_value.size()) * rows;
+  m.J = Eigen::MatrixXd::Ones(n, 1);
+  m.misfit.resize(n);
+  double mean = 0;
+  for (double v : run_value) mean += v / static_cast<double>(run_value.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    m.cluster.push_back(static_cast<int>(i / rows));
+    m.misfit(i) = mean - run_value[static_cast<std::size_t>(i / rows)];
+  }
+  return m;
+}
+
+TEST(Covariance, ErrorOfAMeanIsThatOfTheRunsHoweverOftenEachIsRead) {
+  // Variance of a mean of G values: sum (y - mean)^2/(G (G-1)) = (1 + 1 + 4)/6 for y = 1, 1, 4 shifted to mean 2.
+  for (const int rows : {1, 10, 1000}) {
+    const Mean m = mean_of({1, 1, 4}, rows);
+    const ClusterCovariance c = cluster_covariance(m.J, m.misfit, m.cluster, {true});
+    EXPECT_NEAR(c.covariance(0, 0), 6. / 6, 1e-12) << rows;
+    EXPECT_NEAR(c.effective_runs(0), 3, 1e-12);
+    EXPECT_TRUE(c.identified[0]);
+    EXPECT_TRUE(c.has_error[0]);
+  }
+}
+
+TEST(Covariance, OneRunHasNoError) {
+  const Mean m = mean_of({2}, 50);
+  const ClusterCovariance c = cluster_covariance(m.J, m.misfit, m.cluster, {true});
+  EXPECT_TRUE(c.identified[0]);
+  EXPECT_FALSE(c.has_error[0]);
+  EXPECT_EQ(c.covariance(0, 0), 0);
+}
+
+TEST(Covariance, AParameterOnFewOfManyRunsCountsThoseRunsOnly) {
+  // Parameter 0 is the mean of runs 0 and 1, parameter 1 that of runs 2..9: two separate problems in one.
+  const Eigen::Vector2d two(0.5, -0.5);
+  Eigen::VectorXd eight(8);
+  eight << 1, -1, 2, -2, 3, -3, 4, -4;
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(10, 2);
+  Eigen::VectorXd misfit(10);
+  std::vector<int> cluster;
+  for (Eigen::Index i = 0; i < 10; ++i) {
+    J(i, i < 2 ? 0 : 1) = 1;
+    misfit(i) = i < 2 ? two(i) : eight(i - 2);
+    cluster.push_back(static_cast<int>(i));
+  }
+  const ClusterCovariance c = cluster_covariance(J, misfit, cluster, {true, true});
+  EXPECT_NEAR(c.effective_runs(0), 2, 1e-12);
+  EXPECT_NEAR(c.effective_runs(1), 8, 1e-12);
+  const double rows = 9. / 8;  // (n-1)/(n-p)
+  EXPECT_NEAR(c.covariance(0, 0), two.squaredNorm() / (2 * 1) * rows, 1e-12);
+  EXPECT_NEAR(c.covariance(1, 1), eight.squaredNorm() / (8 * 7) * rows, 1e-12);
+  EXPECT_NEAR(c.covariance(0, 1), 0, 1e-15);
+}
+
+TEST(Covariance, NullDirectionsTakeTheirParametersOnly) {
+  // Columns 0 and 1 are proportional, column 3 is zero: only parameter 2 is determined.
+  Eigen::MatrixXd J(6, 4);
+  std::vector<int> cluster;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    const double t = static_cast<double>(i);
+    J.row(i) << t, 3 * t, 1, 0;
+    cluster.push_back(static_cast<int>(i));
+  }
+  const Eigen::VectorXd misfit = Eigen::VectorXd::Constant(6, 0.1);
+  const ClusterCovariance c = cluster_covariance(J, misfit, cluster, {true, true, true, true});
+  EXPECT_EQ(c.identified, (std::vector<bool>{false, false, true, false}));
+  EXPECT_GT(c.covariance(2, 2), 0);
+}
+
+TEST(Covariance, HeldParametersAreKnownAndHaveNoError) {
+  const Mean m = mean_of({1, 1, 4}, 2);
+  Eigen::MatrixXd J(m.J.rows(), 2);
+  J << m.J, m.J;  // with both free, neither is determined
+  EXPECT_EQ(cluster_covariance(J, m.misfit, m.cluster, {true, true}).identified, (std::vector<bool>{false, false}));
+  const ClusterCovariance c = cluster_covariance(J, m.misfit, m.cluster, {true, false});
+  EXPECT_EQ(c.identified, (std::vector<bool>{true, true}));
+  EXPECT_EQ(c.has_error, (std::vector<bool>{true, false}));
+  EXPECT_EQ(c.covariance(1, 1), 0);
+}
+
+TEST(Covariance, NoErrorWithoutADegreeOfFreedom) {
+  Eigen::MatrixXd J(2, 2);
+  J << 1, 0, 1, 1;
+  const ClusterCovariance c = cluster_covariance(J, Eigen::VectorXd::Zero(2), {0, 1}, {true, true});
+  EXPECT_TRUE(c.identified[0] && c.identified[1]);
+  EXPECT_FALSE(c.has_error[0] || c.has_error[1]);
+}
+
+}  // namespace
+}  // namespace grainlaw::fit

@@ -1,0 +1,137 @@
+#include "fit/data_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "model/error.hpp"
+#include "tests/support/synthetic_dataset.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+std::vector<TestRecord> small_set() {
+  testing::SyntheticOptions options;
+  options.densities = {0.70};
+  options.seeds = {1};
+  options.rows = 12;
+  return testing::synthetic_dataset(testing::synthetic_truth(), options);
+}
+
+std::string refusal(const std::vector<TestRecord>& tests) {
+  try {
+    check_and_sort(tests);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+void expect_refusal(const std::vector<TestRecord>& tests, const std::vector<std::string>& words) {
+  const std::string message = refusal(tests);
+  for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+TEST(DataSet, SortsByWhatATestCanSay) {
+  const std::vector<TestRecord> tests = small_set();
+  const DataSet data = check_and_sort(tests);
+  ASSERT_EQ(data.isotropic.size(), 1u);
+  ASSERT_EQ(data.pure_shear.size(), 1u);
+  ASSERT_EQ(data.other.size(), 1u);
+  EXPECT_EQ(data.isotropic[0], &tests[0]);
+  EXPECT_EQ(data.pure_shear[0], &tests[1]);
+  EXPECT_EQ(data.other[0], &tests[2]);
+  EXPECT_TRUE(data.unused.empty());
+}
+
+TEST(DataSet, IsotropicLoadingIsKnownAndNotUsed) {
+  std::vector<TestRecord> tests = small_set();
+  TestRecord loading = tests[0];
+  loading.name = "iso-loading";
+  loading.path.segments[0].direction = direction_of(Mode::ISO);
+  for (Observation& row : loading.rows) row.stress.tensor *= 1 + 1e-9;  // not the same series
+  for (Observation& row : loading.rows) row.P_star *= 1 + 1e-9;
+  tests.push_back(loading);
+  EXPECT_EQ(check_and_sort(tests).unused, std::vector<std::string>{"iso-loading"});
+}
+
+TEST(DataSet, RunsFromOneKeptStateAreOneCluster) {
+  testing::SyntheticOptions options;
+  options.densities = {0.70, 0.74};
+  options.rows = 8;
+  const std::vector<TestRecord> tests = testing::synthetic_dataset(testing::synthetic_truth(), options);
+  const DataSet data = check_and_sort(tests);
+  for (const TestRecord& a : tests) {
+    for (const TestRecord& b : tests) {
+      const bool same_state = a.packing.seed == b.packing.seed && a.path.nu == b.path.nu;
+      EXPECT_EQ(cluster_of(data, a) == cluster_of(data, b), same_state) << a.name << " " << b.name;
+    }
+  }
+}
+
+TEST(DataSet, RefusesWhatItMustNotSee) {
+  std::vector<TestRecord> tests = small_set();
+  tests[1].role = Role::validation;
+  expect_refusal(tests, {tests[1].name, "validation"});
+}
+
+TEST(DataSet, RefusesMissingTestsWithTheRemedy) {
+  const std::vector<TestRecord> tests = small_set();
+  expect_refusal({tests[1], tests[2]}, {"isotropic unloading", "ISO"});
+  expect_refusal({tests[0], tests[2]}, {"constant volume", "D2"});
+  expect_refusal({}, {"isotropic unloading"});
+}
+
+TEST(DataSet, NamesTestRowAndColumnOfABadNumber) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    std::vector<TestRecord> tests = small_set();
+    tests[1].rows[3].stress.tensor(1, 2) = bad;
+    expect_refusal(tests, {tests[1].name, "row 3", "stress_yz"});
+    tests = small_set();
+    tests[2].rows[5].fabric.tensor(0, 0) = bad;
+    expect_refusal(tests, {tests[2].name, "row 5", "fabric_xx"});
+    tests = small_set();
+    tests[0].rows[0].nu = bad;
+    expect_refusal(tests, {tests[0].name, "row 0", "nu"});
+  }
+}
+
+TEST(DataSet, NoticesUnitsAndSwappedColumns) {
+  std::vector<TestRecord> tests = small_set();
+  for (Observation& row : tests[1].rows) row.stress.tensor *= 1000;  // kPa read as Pa
+  expect_refusal(tests, {tests[1].name, "row 0", "P_star", "units"});
+  tests = small_set();
+  for (Observation& row : tests[1].rows) std::swap(row.P_star, row.nu);
+  expect_refusal(tests, {tests[1].name, "row 0"});
+  tests = small_set();
+  tests[1].rows[4].nu *= 1.001;
+  expect_refusal(tests, {tests[1].name, "row 4", "nu", "strain"});
+  tests = small_set();
+  tests[1].rows[4].F_v *= 2;
+  expect_refusal(tests, {tests[1].name, "row 4", "F_v"});
+}
+
+TEST(DataSet, NoticesATestGivenTwice) {
+  std::vector<TestRecord> tests = small_set();
+  tests.push_back(tests[1]);
+  expect_refusal(tests, {tests[1].name, "twice"});
+  tests.back().name = "another";
+  expect_refusal(tests, {"another", tests[1].name, "same series"});
+}
+
+TEST(DataSet, RefusesEmptyAndMisshapenTests) {
+  std::vector<TestRecord> tests = small_set();
+  tests[1].rows.clear();
+  expect_refusal(tests, {tests[1].name, "0 rows"});
+  tests = small_set();
+  tests[1].packing.mean_radius = 0;
+  expect_refusal(tests, {tests[1].name, "mean_radius"});
+  tests = small_set();
+  tests[2].rows[3].segment = 7;
+  expect_refusal(tests, {tests[2].name, "row 3", "segment"});
+}
+
+}  // namespace
+}  // namespace grainlaw::fit

@@ -1,0 +1,99 @@
+#include "fit/density_law_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/parameters.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+/// Shear fits on Table 3, one per density and seed; values off by +-`scatter` in turn.
+std::vector<ShearFit> table3(const std::vector<double>& densities, int seeds, double scatter = 0) {
+  const LawParameters<double> truth = published_parameters();
+  std::vector<ShearFit> fits;
+  for (const double nu : densities) {
+    for (int seed = 0; seed < seeds; ++seed) {
+      ShearFit fit;
+      fit.test = "d2-" + std::to_string(nu) + "-" + std::to_string(seed);
+      fit.nu = nu;
+      for (const ShearQuantity& q : kShearQuantities) {
+        const double sign = seed % 2 == 0 ? 1 : -1;
+        (fit.*q.estimate).value = (truth.*q.law).value(nu, truth.shear_nu_c) * (1 + sign * scatter);
+        (fit.*q.estimate).status = Status::fitted;
+      }
+      fits.push_back(fit);
+    }
+  }
+  return fits;
+}
+
+std::vector<int> own_clusters(const std::vector<ShearFit>& fits) {
+  std::vector<int> cluster;
+  for (std::size_t i = 0; i < fits.size(); ++i) cluster.push_back(static_cast<int>(i));
+  return cluster;
+}
+
+TEST(DensityLawFit, RecoversTable3) {
+  const LawParameters<double> truth = published_parameters();
+  const std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78, 0.82}, 1);
+  LawParameters<double> law = start_parameters();
+  for (const ShearQuantity& q : kShearQuantities) {
+    const StageFit fit = fit_density_law(q, fits, own_clusters(fits), law, {}, {});
+    EXPECT_TRUE(fit.stage.converged) << q.name << " " << fit.stage.termination;
+    const ExponentialLaw<double>&found = law.*q.law, &expected = truth.*q.law;
+    EXPECT_NEAR(found.Q_limit, expected.Q_limit, 1e-8 * expected.Q_c) << q.name;
+    EXPECT_NEAR(found.Q_c, expected.Q_c, 1e-8 * expected.Q_c) << q.name;
+    EXPECT_NEAR(found.alpha, expected.alpha, 1e-7 * expected.alpha) << q.name;
+  }
+}
+
+TEST(DensityLawFit, ThreeDensitiesDetermineTheCurveAndSeedsTheError) {
+  LawParameters<double> law = start_parameters();
+  const ShearQuantity& s_max = kShearQuantities[0];
+  const std::vector<ShearFit> one = table3({0.68, 0.72, 0.80}, 1);
+  for (const NamedEstimate& e : fit_density_law(s_max, one, own_clusters(one), law, {}, {}).stage.estimates) {
+    EXPECT_EQ(e.estimate.status, Status::fitted) << e.name;
+    EXPECT_TRUE(std::isnan(e.estimate.standard_error)) << "no degree of freedom left: " << e.name;
+  }
+  const std::vector<ShearFit> two = table3({0.68, 0.72, 0.80}, 2, 0.02);
+  for (const NamedEstimate& e : fit_density_law(s_max, two, own_clusters(two), law, {}, {}).stage.estimates) {
+    EXPECT_EQ(e.estimate.status, Status::fitted) << e.name;
+    EXPECT_GT(e.estimate.standard_error, 0) << e.name;
+  }
+}
+
+TEST(DensityLawFit, FewerDensitiesMeetTheirValuesButIdentifyNothing) {
+  for (const std::vector<double>& densities : {std::vector<double>{0.70}, std::vector<double>{0.70, 0.78}}) {
+    const std::vector<ShearFit> fits = table3(densities, 2);
+    LawParameters<double> law = start_parameters();
+    for (const ShearQuantity& q : kShearQuantities) {
+      const StageFit fit = fit_density_law(q, fits, own_clusters(fits), law, {}, {});
+      for (const NamedEstimate& e : fit.stage.estimates) {
+        EXPECT_EQ(e.estimate.status, Status::not_identified) << e.name;
+        EXPECT_TRUE(std::isnan(e.estimate.standard_error)) << e.name;
+        EXPECT_FALSE(e.estimate.note.empty());
+      }
+      EXPECT_EQ(fit.covariance.norm(), 0);
+      for (const ShearFit& f : fits) {
+        const double value = (f.*q.estimate).value;
+        EXPECT_NEAR((law.*q.law).value(f.nu, law.shear_nu_c), value, 1e-5 * value) << q.name;
+      }
+    }
+  }
+}
+
+TEST(DensityLawFit, TestsThatShowedNothingAreLeftOut) {
+  std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78}, 1);
+  fits[0].s_max = {1e9, std::nan(""), Status::not_identified, "short"};
+  LawParameters<double> law = start_parameters();
+  const StageFit fit = fit_density_law(kShearQuantities[0], fits, own_clusters(fits), law, {}, {});
+  EXPECT_EQ(fit.stage.residuals, 3);
+  EXPECT_NEAR(law.stress_ratio_max.value(0.70, law.shear_nu_c), fits[1].s_max.value, 1e-6);
+  for (ShearFit& f : fits) f.s_max.status = Status::not_identified;
+  EXPECT_EQ(fit_density_law(kShearQuantities[0], fits, own_clusters(fits), law, {}, {}).stage.termination, "left out");
+}
+
+}  // namespace
+}  // namespace grainlaw::fit
