@@ -98,6 +98,18 @@ TEST(Solver, O14OverflowWithFiniteRatesIsReported) {
   }
 }
 
+TEST(Solver, O14StateThatOverflowsIsReported) {
+  // The error test of the solver is passed by what is not a number.
+  for (const Method method : kMethods) {
+    Cvode solver(1, {1e-8, 1e-12, method}, [](double, const double*, double* rate) { rate[0] = 1e308; });
+    std::array<double, 1> y{1.7e308};
+    solver.start(0, y, 2);
+    const Arrival arrival = solver.advance(2, y);
+    EXPECT_EQ(arrival.kind, Arrival::Kind::failed) << y[0];
+    EXPECT_TRUE(std::isnan(y[0]));
+  }
+}
+
 TEST(Solver, O14StepLimitIsReported) {
   for (const Method method : kMethods) {
     const Outcome run = integrate(decay, 2, method, 3);
@@ -163,6 +175,21 @@ TEST(Solver, GoesOnAfterAFailureWhenStartedAnew) {
   EXPECT_EQ(solver.advance(1, y).kind, Arrival::Kind::reached);
   EXPECT_NEAR(y[0], std::exp(-1.0), 1e-7);
   EXPECT_EQ(solver.statistics().restarts, 2);
+}
+
+TEST(Solver, StatisticsCountAllStarts) {
+  for (const Method method : kMethods) {
+    long calls = 0;
+    Cvode solver(1, {1e-8, 1e-12, method}, [&](double, const double* y, double* rate) { ++calls, rate[0] = -y[0]; });
+    std::array<double, 1> y{1};
+    for (int i = 0; i < 5; ++i) {
+      solver.start(0, y, 1);
+      ASSERT_EQ(solver.advance(1, y).kind, Arrival::Kind::reached);
+      EXPECT_EQ(solver.statistics().rhs_evaluations, calls);
+      EXPECT_EQ(solver.statistics().restarts, i + 1);
+    }
+    EXPECT_NEAR(y[0], std::exp(-5.0), 1e-8);
+  }
 }
 
 TEST(Solver, RightHandSideIsNeverAskedBeyondTheStop) {
