@@ -1,7 +1,8 @@
 #pragma once
 // Static equilibrium of a packing in a fixed cell by the energy minimiser FIRE (Bitzek et al., Phys. Rev. Lett. 97,
 // 170201 (2006)): elastic forces k delta only, no drag, velocities of the minimiser are its own.
-// Criterion: max net force on a sphere <= tolerance * mean contact force.
+// Criterion: max net force on a sphere <= tolerance * mean contact force, or <= 1e-13 k <r>: an unjammed packing whose
+// last contacts touch by rounding only.
 
 #include "dem/simulation.hpp"
 #include "model/run_control.hpp"
