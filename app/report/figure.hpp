@@ -33,6 +33,7 @@ struct AxisStyle {
   Text label;  ///< quantity, symbol and unit
   bool logarithmic = false;
   std::optional<double> from, to;  ///< shown range; what is not given comes from the data
+  std::optional<double> floor;     ///< smaller values do not stretch the range
   std::optional<double> include;   ///< a value that the range must contain, e.g. 0
 };
 

@@ -106,13 +106,15 @@ Figure density_figure(const ReportInput& input) {
                    [](const Law& law, double nu) { return law.P_star(nu); });
 
   Panel coordination = density_panel("coordination number {C}* [–]", range);
+  coordination.y.from = 5.5;  // below jamming the few particles with four contacts say nothing
   add_isotropic_symbols(coordination, input, &Observation::C_star);
   add_steady_symbols(coordination, input, &fit::ShearFit::C_star);
   add_state_curves(coordination, input, range.from, range.to, {"coordination"},
                    [](const Law& law, double nu) { return law.coordination.C_star(nu); });
 
   Panel rattlers = density_panel("rattler fraction {φ}_{r} [–]", range);
-  rattlers.y.include = 0;
+  rattlers.y.from = 0;
+  rattlers.y.to = 0.3;
   add_isotropic_symbols(rattlers, input, &Observation::rattler_fraction);
   add_steady_symbols(rattlers, input, &fit::ShearFit::rattler_fraction);
   add_state_curves(rattlers, input, range.from, range.to, {"rattlers", "coordination"},
@@ -171,6 +173,7 @@ Figure scaled_density_figure(const ReportInput& input) {
   });
 
   Panel trace = density_panel("fabric trace {F}_{v} [–]", range);
+  trace.y.from = 2.5;
   add_isotropic_symbols(trace, input, &Observation::F_v);
   add_curves(trace, has_values(input.calibration, "fabric"),
              [](const auto& p, double nu) { return p.fabric_g3 * nu * p.isotropic.C(nu); });

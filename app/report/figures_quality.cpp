@@ -12,13 +12,14 @@ namespace {
 
 struct Measure {
   const char* label;
+  double floor;  ///< smaller values matter to nobody
   double (*of)(const Observation&);
 };
 
 constexpr std::array<Measure, 3> kMeasures{
-    {{"{E}_{kin}/{E}_{pot} [–]", [](const Observation& row) { return row.E_kin / row.E_pot; }},
-     {"|energy residual| [–]", [](const Observation& row) { return std::abs(row.energy_residual); }},
-     {"inertial number {I} [–]", [](const Observation& row) { return row.inertial_number; }}}};
+    {{"{E}_{kin}/{E}_{pot} [–]", 1e-9, [](const Observation& row) { return row.E_kin / row.E_pot; }},
+     {"|energy residual| [–]", 1e-9, [](const Observation& row) { return std::abs(row.energy_residual); }},
+     {"inertial number {I} [–]", 1e-6, [](const Observation& row) { return row.inertial_number; }}}};
 
 /// A thin line through the rows: these series are too dense for symbols.
 template <class Abscissa>
@@ -53,6 +54,7 @@ Figure quality_figure(const char* id, const char* title, const char* x_label, do
     panel.x.from = x_from;
     panel.x.to = x_to;
     panel.y.logarithmic = true;
+    panel.y.floor = measure.floor;
     figure.panels.push_back(panel);
   }
   return figure;
@@ -80,7 +82,8 @@ Figure preparation_quality_figure(const ReportInput& input) {
   figure.caption = notation(
       "DEM as lines. The energy residual is the box work minus what was stored and dissipated, over |work| + initial "
       "kinetic "
-      "energy + dissipation. A run warns beyond 10^{−3} and stops beyond 10^{−2}.");
+      "energy + dissipation. A run warns beyond 10^{−3} and stops beyond 10^{−2}. Curves that leave a panel below are "
+      "smaller than anyone needs.");
   for (std::size_t m = 0; m < kMeasures.size(); ++m) {
     for (const TestRecord& test : input.tests) {
       const bool unloading = is_isotropic_unloading(test);

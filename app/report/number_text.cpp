@@ -49,9 +49,9 @@ std::string with_error(double value, double standard_error) {
 std::string percent_difference(double ours, double reference) {
   const double percent = 100 * (ours - reference) / std::abs(reference);
   if (!std::isfinite(percent)) return kNoNumber;
-  if (percent == 0) return "0 %";
+  if (percent == 0) return "0\u00a0%";
   const int decimals = std::abs(percent) < 10 ? 1 : 0;
-  return with_minus(fmt::format("{:+.{}f} %", percent, decimals));
+  return with_minus(fmt::format("{:+.{}f}\u00a0%", percent, decimals));
 }
 
 std::string duration(double seconds) {

@@ -34,18 +34,27 @@ std::string calibrate_command(const fs::path& dir) {
   return fmt::format("grainlaw calibrate SPEC.json -o {}", dir.string());
 }
 
-std::vector<fs::path> prediction_folders(const fs::path& dir, const std::string& command) {
+/// Folders below predictions/, by name.
+std::vector<fs::path> prediction_folders(const fs::path& dir) {
   std::vector<fs::path> folders;
   std::error_code absent;
   for (const auto& entry : fs::directory_iterator(dir / "predictions", absent)) {
     if (entry.is_directory()) folders.push_back(entry.path());
   }
-  if (folders.empty()) {
-    throw InvalidInput(
-        fmt::format("{} holds no prediction; make one with: {}", (dir / "predictions").string(), command));
-  }
   std::sort(folders.begin(), folders.end());
   return folders;
+}
+
+/// No prediction is an error, unless the parameters allow none: then the page is what shows why.
+void check_predictions(const ParametersFile& parameters, const fs::path& dir, const std::string& command,
+                       ReportInput& input) {
+  try {
+    require_parameters(parameters, predict::Model::reduced, "parameters.json");
+  } catch (const InvalidInput& error) {
+    input.warnings.push_back(std::string("No prediction can be made: ") + error.what());
+    return;
+  }
+  throw InvalidInput(fmt::format("{} holds no prediction; make one with: {}", (dir / "predictions").string(), command));
 }
 
 void add_dataset(Dataset dataset, const std::string& expected_digest, ReportInput& input) {
@@ -55,9 +64,9 @@ void add_dataset(Dataset dataset, const std::string& expected_digest, ReportInpu
   }
   input.provenance.push_back({"digest of the data set", dataset.digest, {"dataset/dataset.json"}});
   add_facts(dataset.provenance, "", "dataset/dataset.json", input.provenance);
-  add_facts(dataset.spec, "spec.", "dataset/dataset.json", input.provenance);
+  add_facts(dataset.spec, "", "dataset/dataset.json", input.spec);
   for (DatasetTest& test : dataset.tests) {
-    for (const std::string& warning : test.warnings) input.warnings.push_back(test.record.name + ": " + warning);
+    for (const std::string& warning : test.warnings) input.run_warnings.push_back(test.record.name + ": " + warning);
     input.costs.push_back(test.cost);
     input.tests.push_back(std::move(test.record));
   }
@@ -75,16 +84,25 @@ ReportInput read_report_input(const fs::path& dir) {
 
   ReportInput input;
   ParametersFile parameters = with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); });
-  input.calibration = std::move(parameters.calibration);
+  input.calibration = parameters.calibration;
   with_remedy(calibrate, [&] { read_calibration(dir / "calibration.json", input.calibration); });
   add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.dataset_digest, input);
   add_facts(parameters.provenance, "", "parameters.json", input.provenance);
 
+  const std::vector<fs::path> folders = prediction_folders(dir);
+  if (folders.empty()) check_predictions(parameters, dir, predict_into + "NAME", input);
   const std::string digest = sha256_of_file(dir / "parameters.json");
-  for (const fs::path& folder : prediction_folders(dir, predict_into + "NAME")) {
+  for (const fs::path& folder : folders) {
     const std::string name = folder.filename().string();
     require_file(folder / "prediction.json", predict_into + name);
     input.predictions.push_back(with_remedy(predict_into + name, [&] { return read_prediction(folder); }));
+    if (input.predictions.back().dem) {
+      for (const DatasetTest& test : input.predictions.back().dem->tests) {
+        for (const std::string& warning : test.warnings) {
+          input.run_warnings.push_back(name + ", " + test.record.name + ": " + warning);
+        }
+      }
+    }
     const Json& used = input.predictions.back().parameters;
     if (used.is_object() && used.value("sha256", digest) != digest) {
       input.warnings.push_back("predictions/" + name +

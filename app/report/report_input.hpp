@@ -23,8 +23,10 @@ struct ReportInput {
   std::vector<RunCost> costs;     ///< of the tests, in their order
   fit::Calibration calibration;
   std::vector<PredictionFolder> predictions;  ///< by name
-  std::vector<Fact> provenance;
-  std::vector<std::string> warnings;  ///< files that do not belong together, warnings of runs
+  std::vector<Fact> provenance;               ///< commands, versions, seconds
+  std::vector<Fact> spec;                     ///< of the data set, resolved; empty when unknown
+  std::vector<std::string> warnings;          ///< files that do not belong together
+  std::vector<std::string> run_warnings;      ///< "test: warning" of the DEM runs
 };
 
 /// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it.

@@ -47,6 +47,14 @@ std::vector<std::string> lead(const ReportInput& input) {
     blocks.push_back(warning_html("Not converged: " + stages + ". See the stages of the fit below."));
   }
   for (const std::string& warning : input.warnings) blocks.push_back(warning_html(warning));
+  if (!input.run_warnings.empty()) {
+    blocks.push_back(
+        "<p class=\"warning\">" +
+        to_html(plain(fmt::format("{} warnings came with the DEM runs (energy residual, inertial number or "
+                                  "relaxation); they are listed under ",
+                                  input.run_warnings.size()))) +
+        "<a href=\"#quality\">the quality of the runs</a>.</p>");
+  }
   return blocks;
 }
 
@@ -67,12 +75,16 @@ std::string dilatancy_gap(const ReportInput& input) {
   return fmt::format(
       "The known gap of Eq. 16: at constant volume the pressure of the packing changes, most of all near jamming, and "
       "the law "
-      "has no dilatancy to follow it. The largest bias of P* is {} % of the largest DEM value, in {}.",
+      "has no dilatancy to follow it. The largest bias of P* is {}\u00a0% of the largest DEM value, in {}.",
       fixed(100 * worst->bias / worst->max_abs_data, 1), worst->test);
 }
 
 Section predictions(const ReportInput& input) {
   Section section{"predictions", "Predictions against runs that the fit never saw", {}};
+  if (input.predictions.empty()) {
+    section.blocks.push_back(paragraph_html(plain("None: the data do not identify all that a prediction needs.")));
+    return section;
+  }
   section.blocks.push_back(table_html(prediction_summary(input.predictions)));
   for (std::size_t i = 0; i < input.predictions.size(); ++i) {
     const PredictionFolder& prediction = input.predictions[i];
@@ -119,13 +131,18 @@ Page make_page(const ReportInput& input) {
                            {paragraph_html(plain(dilatancy_gap(input))), figure_html(residual_figure(input)),
                             folded("All numbers, test by test", table_html(residual_table(calibration))),
                             folded("Stages of the fit", table_html(stage_table(calibration)))}});
+  std::string warnings;
+  for (const std::string& warning : input.run_warnings) warnings += "<li>" + to_html(plain(warning)) + "</li>\n";
+  if (warnings.empty()) warnings = "<li>none</li>\n";
   page.sections.push_back({"quality",
                            "How quasi-static and how exact the runs were",
-                           {figure_html(preparation_quality_figure(input)), figure_html(shear_quality_figure(input))}});
-  page.sections.push_back({"provenance",
-                           "Provenance and cost",
-                           {table_html(cost_table(input)), table_html(provenance_table(input)),
-                            folded("All runs", table_html(run_table(input)))}});
+                           {figure_html(preparation_quality_figure(input)), figure_html(shear_quality_figure(input)),
+                            folded("Warnings of the runs", "<ul>\n" + warnings + "</ul>")}});
+  page.sections.push_back(
+      {"provenance",
+       "Provenance and cost",
+       {table_html(cost_table(input)), table_html(provenance_table(input)),
+        folded("The resolved spec", table_html(spec_table(input))), folded("All runs", table_html(run_table(input)))}});
   return page;
 }
 

@@ -30,6 +30,7 @@ struct Extent {
 
   void add(double value, const AxisStyle& style) {
     if (!std::isfinite(value) || (style.logarithmic && value <= 0)) return;
+    if (style.floor && value < *style.floor) return;
     lowest = std::min(lowest, value);
     highest = std::max(highest, value);
   }

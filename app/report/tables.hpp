@@ -26,7 +26,9 @@ Table solver_table(const std::vector<PredictionFolder>& predictions);
 Table run_table(const ReportInput& input);
 /// Steps, particle-steps and seconds of the data set and of each prediction's runs.
 Table cost_table(const ReportInput& input);
+/// Commands, versions and digests, and which files say so.
 Table provenance_table(const ReportInput& input);
+Table spec_table(const ReportInput& input);
 
 /// The value of an estimate with its error, or its status in words.
 std::string estimate_text(const fit::Estimate& estimate);

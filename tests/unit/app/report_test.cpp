@@ -151,6 +151,16 @@ TEST_F(ReportFolder, ParametersThatAreNotIdentifiedAreWordsAndDrawNoCurve) {
   EXPECT_EQ(count_words(html, "nan"), 0);
 }
 
+TEST_F(ReportFolder, WithoutPredictionsThePageNeedsAReason) {
+  EXPECT_NE(message_without("predictions").find("holds no prediction"), std::string::npos);
+  ParametersFile parameters = read_parameters(dir_ / "parameters.json");
+  parameters.calibration.estimates[parameter_index("fabric_rate.Q_c")] = {std::nan(""), std::nan(""),
+                                                                          fit::Status::not_identified, "one density"};
+  write_parameters(dir_ / "parameters.json", parameters);
+  fs::remove_all(dir_ / "predictions");
+  EXPECT_NE(page().find("No prediction can be made"), std::string::npos);
+}
+
 TEST_F(ReportFolder, TheSummaryIsARectangleOfText) {
   std::istringstream lines(summary_table(dir_));
   std::string line;

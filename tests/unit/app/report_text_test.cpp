@@ -75,8 +75,8 @@ TEST(ReportNumbers, DigitsAndSigns) {
   EXPECT_EQ(significant_padded(9.28), "9.280");
   EXPECT_EQ(significant_padded(5703, 4), "5703");
   EXPECT_EQ(fixed(-0.0001, 2), "0.00");
-  EXPECT_EQ(percent_difference(0.98, 1), "\u22122.0 %");
-  EXPECT_EQ(percent_difference(1, 1), "0 %");
+  EXPECT_EQ(percent_difference(0.98, 1), "\u22122.0\u00a0%");
+  EXPECT_EQ(percent_difference(1, 1), "0\u00a0%");
   EXPECT_EQ(duration(45), "45 s");
   EXPECT_EQ(duration(600), "10.0 min");
   EXPECT_EQ(duration(7200), "2.0 h");
