@@ -82,8 +82,8 @@ Figure preparation_quality_figure(const ReportInput& input) {
   figure.caption = notation(
       "DEM as lines. The energy residual is the box work minus what was stored and dissipated, over |work| + initial "
       "kinetic "
-      "energy + dissipation. A run warns beyond 10^{−3} and stops beyond 10^{−2}. Curves that leave a panel below are "
-      "smaller than anyone needs.");
+      "energy + dissipation. A run warns beyond 10^{−3} and stops beyond 10^{−2}. Lines that leave a panel "
+      "at its lower edge go on to smaller values.");
   for (std::size_t m = 0; m < kMeasures.size(); ++m) {
     for (const TestRecord& test : input.tests) {
       const bool unloading = is_isotropic_unloading(test);

@@ -24,7 +24,7 @@ h2 { font-size: 1.25rem; margin: 2.5rem 0 .75rem; padding-top: .75rem; border-to
 p { max-width: 46rem; }
 a { color: var(--link); }
 code { font: .85em ui-monospace, "DejaVu Sans Mono", monospace; overflow-wrap: anywhere; }
-td { overflow-wrap: anywhere; }
+td { overflow-wrap: break-word; min-width: 3rem; }
 nav ol { columns: 2; padding-left: 1.5rem; margin: 1rem 0; font-size: .95rem; }
 figure { margin: 1.5rem 0 2rem; }
 figcaption { max-width: 56rem; font-size: .9rem; margin-top: .4rem; }
@@ -59,6 +59,7 @@ sub, sup { line-height: 0; font-size: 75%; }
   body { max-width: none; padding: 0; }
   svg { min-width: 0; }
   .scroll { overflow: visible; }
+  details::details-content { content-visibility: visible; }
   figure, tbody tr { break-inside: avoid; }
   h2, caption { break-after: avoid; }
 }

@@ -144,8 +144,11 @@ void add_facts(const Json& document, const std::string& prefix, const std::strin
     }
     return;
   }
+  // Seconds and megabytes with all their digits would drown the rest.
   const std::string value = document.is_string() ? document.get<std::string>()
-                                                 : document.dump(-1, ' ', false, Json::error_handler_t::replace);
+                            : document.is_number_float()
+                                ? fmt::format("{:.6g}", document.get<double>())
+                                : document.dump(-1, ' ', false, Json::error_handler_t::replace);
   const auto known = std::find_if(facts.begin(), facts.end(),
                                   [&](const Fact& fact) { return fact.what == prefix && fact.value == value; });
   if (known != facts.end()) {
