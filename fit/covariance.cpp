@@ -1,6 +1,7 @@
 #include "fit/covariance.hpp"
 
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -44,6 +45,26 @@ PseudoInverse pseudo_inverse(const Eigen::MatrixXd& J) {
   return result;
 }
 
+constexpr Eigen::Index kPieces = 10;  // of a run: longer than the correlation of its rows, short enough to be many
+
+/// sum over pieces of g g^T, g = J^T r of the piece; `rows` of each run are cut into `pieces` in their order.
+Eigen::MatrixXd score_products(const Eigen::MatrixXd& J, const Eigen::VectorXd& misfit,
+                               const std::map<int, std::vector<Eigen::Index>>& rows_of, Eigen::Index pieces) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(J.cols(), J.cols());
+  for (const auto& [id, rows] : rows_of) {
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    for (Eigen::Index k = 0; k < pieces; ++k) {
+      Eigen::VectorXd g = Eigen::VectorXd::Zero(J.cols());
+      for (Eigen::Index i = k * n / pieces; i < (k + 1) * n / pieces; ++i) {
+        const Eigen::Index row = rows[static_cast<std::size_t>(i)];
+        g += J.row(row).transpose() * misfit(row);
+      }
+      sum += g * g.transpose();
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
@@ -70,12 +91,9 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
 
   std::map<int, std::vector<Eigen::Index>> rows_of;
   for (std::size_t i = 0; i < cluster.size(); ++i) rows_of[cluster[i]].push_back(static_cast<Eigen::Index>(i));
-  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(p, p);
   Eigen::VectorXd share_squared = Eigen::VectorXd::Zero(p);
   for (const auto& [id, rows] : rows_of) {
     const Eigen::MatrixXd J_c = J(rows, Eigen::all);
-    const Eigen::VectorXd g = J_c.transpose() * misfit(rows);
-    meat += g * g.transpose();
     const Eigen::MatrixXd spread = J_c * inverse.H_plus;
     for (Eigen::Index k = 0; k < p; ++k) {
       if (inverse.H_plus(k, k) > 0) {
@@ -83,7 +101,8 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
       }
     }
   }
-  const Eigen::MatrixXd V0 = inverse.H_plus * meat * inverse.H_plus;
+  const Eigen::MatrixXd V0 = inverse.H_plus * score_products(J, misfit, rows_of, 1) * inverse.H_plus;
+  const Eigen::MatrixXd V0_pieces = inverse.H_plus * score_products(J, misfit, rows_of, kPieces) * inverse.H_plus;
   const double n = static_cast<double>(J.rows()), dof = n - static_cast<double>(p);
   Eigen::VectorXd factor = Eigen::VectorXd::Zero(p);
   for (Eigen::Index k = 0; k < p; ++k) {
@@ -97,7 +116,10 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
       factor(k) = std::sqrt(G / (G - 1) * (n - 1) / dof);
     }
   }
-  const Eigen::MatrixXd V = factor.asDiagonal() * V0 * factor.asDiagonal();
+  Eigen::MatrixXd V = factor.asDiagonal() * V0 * factor.asDiagonal();
+  for (Eigen::Index k = 0; k < p; ++k) {
+    if (factor(k) > 0) V(k, k) = std::max(V(k, k), V0_pieces(k, k) * (n - 1) / dof);
+  }
   for (Eigen::Index i = 0; i < p; ++i) {
     for (Eigen::Index j = 0; j < p; ++j) {
       result.covariance(columns[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(j)]) = V(i, j);

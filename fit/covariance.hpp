@@ -6,6 +6,9 @@
 // with h_ci = (H^+ J_c^T J_c H^+)_ii/(H^+)_ii the share of run c in what is known of parameter i. G_i, the effective
 // number of runs, takes the place of the plain number because a parameter may rest on few of many runs: two ISO branches
 // among twenty shear tests are two runs for the pressure's nu_c.
+// With few runs the sum has few terms and can vanish in a direction by chance (two runs and three parameters: it must).
+// So the same estimate is made with each run cut into ten pieces in the order of its rows, and a variance that is larger
+// there is taken from there: the diagonal of V is the larger of the two.
 // Sources: Liang & Zeger 1986; the factor G/(G-1) (n-1)/(n-p) is the usual small-sample correction.
 //
 // Identifiability: singular values of J with columns scaled to one. A column that is zero, or takes part in a null

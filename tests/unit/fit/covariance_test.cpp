@@ -1,5 +1,6 @@
 #include "fit/covariance.hpp"
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,6 +40,29 @@ TEST(Covariance, ErrorOfAMeanIsThatOfTheRunsHoweverOftenEachIsRead) {
     EXPECT_NEAR(c.effective_runs(0), 3, 1e-12);
     EXPECT_TRUE(c.identified[0]);
     EXPECT_TRUE(c.has_error[0]);
+  }
+}
+
+// Two runs that differ from the fit by +u and -u: their scores cancel in every direction but one, u itself. The pieces
+// know better: white noise of variance s^2 gives each coefficient of a straight line the error s sqrt((X^T X)^-1_ii).
+TEST(Covariance, TwoRunsDoNotMakeADirectionCertain) {
+  const Eigen::Index n = 400;
+  Eigen::MatrixXd J(2 * n, 2);
+  Eigen::VectorXd misfit(2 * n);
+  std::vector<int> cluster;
+  for (Eigen::Index i = 0; i < 2 * n; ++i) {
+    const double t = static_cast<double>(i % n) / static_cast<double>(n) - 0.5;
+    J.row(i) << 1, t;
+    misfit(i) = std::sin(1e4 * static_cast<double>(i * i % 7919));  // no run differs from the other in its mean
+    cluster.push_back(static_cast<int>(i / n));
+  }
+  const Eigen::MatrixXd H = (J.transpose() * J).inverse();
+  misfit -= J * (H * (J.transpose() * misfit));  // as after a fit
+  const double s2 = misfit.squaredNorm() / static_cast<double>(2 * n - 2);
+  const ClusterCovariance c = cluster_covariance(J, misfit, cluster, {true, true});
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    EXPECT_GT(c.covariance(k, k), 0.3 * s2 * H(k, k)) << k;  // 20 pieces: chi^2 of 20, 0.3 is its lowest 0.1 %
+    EXPECT_LT(c.covariance(k, k), 4 * s2 * H(k, k)) << k;
   }
 }
 
