@@ -67,10 +67,11 @@ std::string file_list(const std::vector<std::string>& files) {
   return html;
 }
 
-const char* cell_class(TableColumn::Content content) {
+/// `characters` of its text; 0 in a heading.
+const char* cell_class(TableColumn::Content content, std::size_t characters) {
   switch (content) {
     case TableColumn::Content::words:
-      break;
+      return characters > 30 ? " class=\"long\"" : "";
     case TableColumn::Content::symbol:
       return " class=\"symbol\"";
     case TableColumn::Content::number:
@@ -141,15 +142,15 @@ std::string table_html(const Table& table) {
   if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
   html += "</caption>\n<thead><tr>";
   for (const TableColumn& column : table.columns) {
-    html += fmt::format("<th scope=\"col\"{}>{}</th>", cell_class(column.content), to_html(column.heading));
+    html += fmt::format("<th scope=\"col\"{}>{}</th>", cell_class(column.content, 0), to_html(column.heading));
   }
   html += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size() && i < table.columns.size(); ++i) {
       const char* const tag = i == 0 ? "th" : "td";
-      html += fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "", cell_class(table.columns[i].content),
-                          to_html(row[i]), tag);
+      html += fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "",
+                          cell_class(table.columns[i].content, character_count(row[i])), to_html(row[i]), tag);
     }
     html += "</tr>\n";
   }

@@ -24,7 +24,8 @@ h2 { font-size: 1.25rem; margin: 2.5rem 0 .75rem; padding-top: .75rem; border-to
 p { max-width: 46rem; }
 a { color: var(--link); }
 code { font: .85em ui-monospace, "DejaVu Sans Mono", monospace; overflow-wrap: anywhere; }
-td { overflow-wrap: break-word; min-width: 3rem; }
+td { overflow-wrap: break-word; }
+.long { min-width: 13rem; }
 nav ol { columns: 2; padding-left: 1.5rem; margin: 1rem 0; font-size: .95rem; }
 figure { margin: 1.5rem 0 2rem; }
 figcaption { max-width: 56rem; font-size: .9rem; margin-top: .4rem; }
