@@ -77,7 +77,8 @@ std::vector<DensitySeries> steady_series(const DataSet& data, const CalibrationO
     std::vector<DensityPoint> steady;
     for (std::size_t i = 0; i < test->rows.size(); ++i) {
       const Observation& row = test->rows[i];
-      if (deviatoric_norm(row.strain.tensor - test->rows.front().strain.tensor) >= options.steady_from - 1e-9 && is_jammed(row))
+      if (deviatoric_norm(row.strain.tensor - test->rows.front().strain.tensor) >= options.steady_from - 1e-9 &&
+          is_jammed(row))
         steady.push_back(point_of(*test, i));
       else
         ++series.excluded;

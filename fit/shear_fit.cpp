@@ -17,8 +17,9 @@ namespace {
 
 using Jet = ceres::Jet<double, 2>;
 
-constexpr double kLargestLimit = 3;    // s_max and F_max: far beyond any frictionless packing
-constexpr double kLargestRate = 2000;  // beta: a strain of 5e-4, less than a row
+constexpr double kShownSaturation = 0.5;  // rate times strain; below, limit and rate are one number, the slope
+constexpr double kLargestLimit = 3;       // s_max and F_max: far beyond any frictionless packing
+constexpr double kLargestRate = 2000;     // beta: a strain of 5e-4, less than a row
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean of the last tenth of the rows, and 1/beta as the area between the limit and the curve.
@@ -36,8 +37,8 @@ struct Curve {
   Estimate limit, rate;
 };
 
-Curve fit_curve(const SaturationProblem& problem, double eps_dev_max, double start, double scale,
-                const CalibrationOptions& options, const RunControl& control, Stage& stage) {
+Curve fit_curve(const SaturationProblem& problem, double start, double scale, const CalibrationOptions& options,
+                const RunControl& control, Stage& stage) {
   Curve curve;
   const std::string& quantity = problem.blocks.front().channels.front().quantity;
   const StageFit fit = fit_stage("shear " + problem.blocks.front().test, "", problem.parameters, problem.blocks,
@@ -52,14 +53,15 @@ Curve fit_curve(const SaturationProblem& problem, double eps_dev_max, double sta
     estimate.status = Status::not_identified;
     estimate.note = note;
   };
-  if (curve.rate.value * eps_dev_max < kShownSaturation) {
-    const std::string note = fmt::format("no saturation up to eps_dev = {:.3g}; shear to at least {:.3g}", eps_dev_max,
-                                         2 / curve.rate.value);
+  if (const double change = std::abs(curve.limit.value - start);
+      change <= 0.1 * scale || (!fit.stage.tests.empty() && change < fit.stage.tests.front().rms)) {
+    withdraw(curve.rate, fmt::format("{} changes by {:.2g} only, which is its scatter", quantity, change));
+  } else if (!shows_saturation(problem.eps_dev, problem.value, problem.weight, start, curve.rate.value,
+                               2 * fit.stage.final_cost)) {
+    const std::string note = fmt::format("no saturation up to eps_dev = {:.3g}; shear to eps_dev >= {:g}",
+                                         problem.eps_dev.back(), options.steady_from);
     withdraw(curve.limit, note);
     withdraw(curve.rate, note);
-  } else if (const double change = std::abs(curve.limit.value - start);
-             change <= 0.1 * scale || (!fit.stage.tests.empty() && change < fit.stage.tests.front().rms)) {
-    withdraw(curve.rate, fmt::format("{} changes by {:.2g} only, which is its scatter", quantity, change));
   }
   if (!fit.stage.converged) {
     withdraw(curve.limit, "no convergence: " + fit.stage.termination);
@@ -80,6 +82,20 @@ Curve fit_curve(const SaturationProblem& problem, double eps_dev_max, double sta
 
 }  // namespace
 
+bool shows_saturation(const std::vector<double>& eps_dev, const std::vector<double>& value,
+                      const std::vector<double>& weight, double start, double rate, double squared_misfit) {
+  double ee = 0, ev = 0, vv = 0;
+  for (std::size_t i = 0; i < eps_dev.size(); ++i) {
+    const double w2 = weight[i] * weight[i], v = value[i] - start;
+    ee += w2 * eps_dev[i] * eps_dev[i];
+    ev += w2 * eps_dev[i] * v;
+    vv += w2 * v * v;
+  }
+  if (eps_dev.empty() || ee == 0 || rate * eps_dev.back() < kShownSaturation) return false;
+  const double of_line = vv - ev * ev / ee;
+  return of_line >= 2 * squared_misfit;
+}
+
 SaturationProblem saturation_problem(const std::string& test, const std::string& quantity,
                                      const std::vector<double>& eps_dev, const std::vector<double>& value, double start,
                                      const CalibrationOptions& options) {
@@ -93,15 +109,15 @@ SaturationProblem saturation_problem(const std::string& test, const std::string&
   block.test = test;
   block.weight = Eigen::Map<const Eigen::VectorXd>(rows.weight.data(), n);
   Channel channel{quantity, 0, n, static_cast<int>(eps_dev.size()) - n, 0};
-  std::vector<double> e, datum;
+  problem.weight = rows.weight;
   for (std::size_t i : rows.row) {
-    e.push_back(eps_dev[i]);
-    datum.push_back(value[i]);
+    problem.eps_dev.push_back(eps_dev[i]);
+    problem.value.push_back(value[i]);
     channel.max_abs_data = std::max(channel.max_abs_data, std::abs(value[i]));
   }
   block.channels.push_back(channel);
   block.evaluate = differentiated<Jet>(
-      [e, datum, start](const auto* x, auto* misfit) {
+      [e = problem.eps_dev, datum = problem.value, start](const auto* x, auto* misfit) {
         using T = std::decay_t<decltype(*x)>;
         for (std::size_t i = 0; i < e.size(); ++i) misfit[i] = saturating(x[0], T(start), x[1], e[i]) - datum[i];
         return true;
@@ -164,7 +180,7 @@ ShearFit fit_shear(const TestRecord& test, double nu_c, const CalibrationOptions
                        Estimate& rate) {
     SaturationProblem problem = saturation_problem(test.name, quantity, eps_dev, value, value.front(), options);
     problem.blocks.front().channels.front().excluded += rows - static_cast<int>(eps_dev.size());
-    const Curve curve = fit_curve(problem, fit.eps_dev_max, value.front(), scale, options, control, stage);
+    const Curve curve = fit_curve(problem, value.front(), scale, options, control, stage);
     limit = curve.limit;
     rate = curve.rate;
   };

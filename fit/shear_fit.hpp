@@ -14,13 +14,16 @@ namespace grainlaw::fit {
 struct SaturationProblem {
   std::vector<FreeParameter> parameters;
   std::vector<ResidualBlock> blocks;
+  std::vector<double> eps_dev, value, weight;  ///< rows of the block
 };
 SaturationProblem saturation_problem(const std::string& test, const std::string& quantity,
                                      const std::vector<double>& eps_dev, const std::vector<double>& value, double start,
                                      const CalibrationOptions& options);
 
-/// Shortest shear that shows saturation: rate times strain. Below it limit and rate are one number, the slope.
-inline constexpr double kShownSaturation = 0.5;
+/// True when rows show a limit and not only a slope: rate times strain reaches 0.5, and a straight line from `start` meets
+/// them worse than the saturating curve does, twice its squared misfit at least (scatter must not pass for curvature).
+bool shows_saturation(const std::vector<double>& eps_dev, const std::vector<double>& value,
+                      const std::vector<double>& weight, double start, double rate, double squared_misfit);
 
 /// One test; also appends its two misfits and costs to `stage`.
 ShearFit fit_shear(const TestRecord& test, double nu_c, const CalibrationOptions& options, const RunControl& control,

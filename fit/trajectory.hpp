@@ -23,9 +23,9 @@ inline const LawState<double> kNoState{0, Deviator<double>::Zero(), Deviator<dou
 
 /// Row of a trajectory.
 struct TrajectoryRow {
-  double e = 0;           ///< path parameter since the start of the trajectory [-]
+  double e = 0;                      ///< path parameter since the start of the trajectory [-]
   LawState<double> data = kNoState;  ///< measured
-  double weight = 0;      ///< of its window, before division by the scale of a quantity
+  double weight = 0;                 ///< of its window, before division by the scale of a quantity
 };
 
 struct Trajectory {
@@ -33,7 +33,7 @@ struct Trajectory {
   int cluster = 0;
   int segment = 0;
   bool starts_on_law = false;          ///< P by Eq. (14) at nu_start, else all of `start`
-  LawState<double> start = kNoState;  ///< measured
+  LawState<double> start = kNoState;   ///< measured
   double nu_start = 0;                 ///< [-]
   LawDirection direction;              ///< per unit of e
   std::vector<Deviator<double>> axes;  ///< orthonormal; deviators are compared along these, the first one is N of s_par
