@@ -176,6 +176,10 @@ Json parse_json(std::string_view text, const std::string& name, JsonSource sourc
   if (text.substr(0, 3) == "\xEF\xBB\xBF") {
     throw InvalidInput(fmt::format("{}: begins with a byte order mark; save it as UTF-8 without one", name));
   }
+  // the parser takes a NUL byte for the end of the document
+  if (text.find('\0') != std::string_view::npos) {
+    throw InvalidInput(fmt::format("{}: holds a NUL byte; the file must be one JSON document in UTF-8", name));
+  }
   StrictBuilder builder(name, source);
   if (!Json::sax_parse(text.begin(), text.end(), &builder)) {
     throw InvalidInput(fmt::format("{}: is not a JSON document", name));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "app/files/schema_validator.hpp"
@@ -126,19 +127,63 @@ std::string complaint(const Json& value, const Json& s) {
   return fmt::format("got {}; give {}", got, remedy);
 }
 
-}  // namespace
-
-const Json& schema(Schema which) {
-  static const std::map<Schema, Json> all{{Schema::spec, load("spec.schema.json")},
-                                          {Schema::path, load("path.schema.json")},
-                                          {Schema::test, load("test.schema.json")},
-                                          {Schema::dataset, load("dataset.schema.json")},
-                                          {Schema::parameters, load("parameters.schema.json")}};
-  return all.at(which);
+bool all_different(const Json& array) {
+  std::set<std::string> seen;
+  return std::all_of(array.begin(), array.end(), [&](const Json& element) { return seen.insert(element.dump(-1, ' ', false, Json::error_handler_t::replace)).second; });
 }
 
+/// Length and uniqueness of arrays. The library compares and reports every pair of elements: too slow for hostile input.
+Violation first_array_violation(const Json& value, const Json& s) {
+  if (value.is_array() && s.contains("items")) {
+    if (value.size() > s.value("maxItems", std::size_t{1000000})) return {true, {}};
+    if (s.value("uniqueItems", false) && !all_different(value)) return {true, {}};
+  }
+  if (!value.is_structured()) return {};
+  for (const auto& item : value.items()) {
+    const Json* next = nullptr;
+    if (value.is_array() && s.contains("items")) next = &s["items"];
+    if (value.is_object() && s.contains("properties") && s["properties"].contains(item.key())) next = &s["properties"][item.key()];
+    if (next == nullptr) continue;
+    Violation violation = first_array_violation(item.value(), *next);
+    if (!violation.found) continue;
+    violation.place.insert(violation.place.begin(), item.key());
+    return violation;
+  }
+  return {};
+}
+
+Json without_unique_items(Json node) {
+  if (node.is_object()) node.erase("uniqueItems");
+  if (node.is_structured()) {
+    for (auto& child : node) child = without_unique_items(child);
+  }
+  return node;
+}
+
+struct Schemas {
+  std::map<Schema, Json> whole, for_library;
+
+  Schemas() {
+    for (const auto& [which, file] : {std::pair{Schema::spec, "spec.schema.json"}, {Schema::path, "path.schema.json"}, {Schema::test, "test.schema.json"},
+                                      {Schema::dataset, "dataset.schema.json"}, {Schema::parameters, "parameters.schema.json"}}) {
+      whole[which] = load(file);
+      for_library[which] = without_unique_items(whole[which]);
+    }
+  }
+};
+
+const Schemas& schemas_built_in() {
+  static const Schemas all;
+  return all;
+}
+
+}  // namespace
+
+const Json& schema(Schema which) { return schemas_built_in().whole.at(which); }
+
 void check_schema(const Json& document, Schema which, const std::string& name) {
-  const Violation violation = first_violation(document, schema(which));
+  Violation violation = first_array_violation(document, schema(which));
+  if (!violation.found) violation = first_violation(document, schemas_built_in().for_library.at(which));
   if (!violation.found) return;
   const Json* value = &document;
   const Json* s = &schema(which);

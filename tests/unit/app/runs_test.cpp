@@ -1,0 +1,195 @@
+// Content-addressed runs: keys, store, and the two kinds of run with very small packings.
+#include "app/runs.hpp"
+
+#include <thread>
+
+#include "app/dataset_runs.hpp"
+#include "app/files/preparation_json.hpp"
+#include "app/files/series_csv.hpp"
+#include "app/new_packings.hpp"
+#include "dem/state_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+using testing::refusal;
+namespace fs = std::filesystem;
+
+dem::PreparationOptions tiny() {
+  dem::PreparationOptions options;
+  options.packing.particles = 32;
+  options.drive.strain_rate = 20000;
+  options.rows = 20;
+  options.keep_unloading = {0.74};
+  options.nu_end = 0.7;
+  return options;
+}
+
+Path d2(double nu = 0.74) { return {nu, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.02}}}; }
+
+class Runs : public testing::TemporaryFolder {};
+
+TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
+  const std::string key = run_key(preparation_request(tiny()));
+  EXPECT_EQ(key.size(), 64u);
+  const auto changed = [&](const std::function<void(dem::PreparationOptions&)>& change) {
+    dem::PreparationOptions options = tiny();
+    change(options);
+    return run_key(preparation_request(options)) != key;
+  };
+  using O = dem::PreparationOptions;
+  EXPECT_FALSE(changed([](O& o) { o.engine.threads = 7; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.particles = 33; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.seed = 2; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.size_width = 2; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.mean_radius *= 1 + 1e-15; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.material.density += 1; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.material.stiffness += 1; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.material.contact_viscosity += 1; }));
+  EXPECT_TRUE(changed([](O& o) { o.packing.material.background_viscosity += 1; }));
+  EXPECT_TRUE(changed([](O& o) { o.engine.time_step_fraction = 0.09; }));
+  EXPECT_TRUE(changed([](O& o) { o.engine.skin = 0.09; }));
+  EXPECT_TRUE(changed([](O& o) { o.drive.strain_rate = 1; }));
+  EXPECT_TRUE(changed([](O& o) { o.drive.profile = dem::Profile::constant; }));
+  EXPECT_TRUE(changed([](O& o) { o.drive.transport = dem::Transport::wall; }));
+  EXPECT_TRUE(changed([](O& o) { o.relax.tolerance = 1e-6; }));
+  EXPECT_TRUE(changed([](O& o) { o.relax.max_passes = 5; }));
+  EXPECT_TRUE(changed([](O& o) { o.nu_gas = 0.31; }));
+  EXPECT_TRUE(changed([](O& o) { o.nu_start = 0.65; }));
+  EXPECT_TRUE(changed([](O& o) { o.nu_max = 0.81; }));
+  EXPECT_TRUE(changed([](O& o) { o.nu_end = 0.71; }));
+  EXPECT_TRUE(changed([](O& o) { o.gas_compression_factor = 5; }));
+  EXPECT_TRUE(changed([](O& o) { o.keep_loading = {0.7}; }));
+  EXPECT_TRUE(changed([](O& o) { o.keep_unloading = {0.75}; }));
+  EXPECT_TRUE(changed([](O& o) { o.rows = 21; }));
+
+  const auto test_key = [](const dem::PreparationOptions& o, const Path& path) { return run_key(test_request({o, {}, "", false}, path)); };
+  dem::PreparationOptions more = tiny();
+  more.keep_unloading = {0.72, 0.74};  // another state kept on the way changes no test
+  EXPECT_EQ(test_key(more, d2()), test_key(tiny(), d2()));
+  more = tiny();
+  more.rows = 21;
+  EXPECT_NE(test_key(more, d2()), test_key(tiny(), d2()));
+  EXPECT_NE(test_key(tiny(), d2(0.75)), test_key(tiny(), d2()));
+  Path longer = d2();
+  longer.segments[0].extent = 0.03;
+  EXPECT_NE(test_key(tiny(), longer), test_key(tiny(), d2()));
+}
+
+TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
+  const RunStore store(folder_, "runs");
+  const Json record = ensure_preparation(store, tiny(), {});
+  const std::string key = record.at("key");
+  EXPECT_EQ(record.at("states").size(), 1u);
+  const fs::path state = store.folder(key) / kept_file(Branch::unloading, 0.74);
+  EXPECT_NEAR(dem::volume_fraction(dem::read_state(state).packing), 0.74, 1e-15);
+  EXPECT_TRUE(fs::exists(store.folder(key) / "loading.csv"));
+
+  const auto written = fs::last_write_time(store.folder(key) / "run.json");
+  const std::string bytes = content(state);
+  EXPECT_EQ(ensure_preparation(store, tiny(), {}), record);
+  EXPECT_EQ(fs::last_write_time(store.folder(key) / "run.json"), written);
+
+  std::string damaged = bytes;
+  damaged[damaged.size() / 2] ^= 1;
+  put("runs/" + key + "/" + state.filename().string(), damaged);
+  EXPECT_FALSE(store.find(key));
+  ensure_preparation(store, tiny(), {});
+  EXPECT_EQ(content(state), bytes);  // the same bits again
+
+  fs::remove(store.folder(key) / "run.json");  // as if killed before the end
+  put("runs/" + key + "/leftover", "x");
+  EXPECT_FALSE(store.find(key));
+  ensure_preparation(store, tiny(), {});
+  EXPECT_FALSE(fs::exists(store.folder(key) / "leftover"));
+}
+
+TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
+  const RunStore store(folder_, "runs");
+  ensure_preparation(store, tiny(), {});
+  TestStart start{tiny(), {}, "", false};
+  const Json record = ensure_test(store, start, d2(), {});
+  const fs::path series = store.folder(record.at("key")) / "series.csv";
+  const auto rows = read_series(series, d2(), packing_from_record(record));
+  EXPECT_EQ(rows.size(), 21u);
+  EXPECT_NEAR(rows.back().eps_dev, 0.02, 1e-15);
+  EXPECT_GT(cost_from_record(record).steps, 0u);
+  EXPECT_EQ(packing_from_record(record).particles, 32);
+  EXPECT_GT(packing_from_record(record).mean_radius, 0.5e-3);
+
+  const std::string bytes = content(series);
+  fs::remove(store.folder(record.at("key")) / "run.json");
+  start.preparation.engine.threads = 2;
+  ensure_test(store, start, d2(), {});
+  EXPECT_EQ(content(series), bytes);
+}
+
+TEST_F(Runs, StoreBelongsToOneProcess) {
+  const RunStore store(folder_, "runs");
+  EXPECT_THROW(RunStore(folder_, "runs"), Error);
+}
+
+Spec tiny_spec() {
+  Spec spec = spec_from_json(parse_json(R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70, "keep": [0.76],
+      "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "strain": 0.02, "role": "calibration"}, {"mode": "UNI", "strain": 0.01, "role": "validation"}]})",
+                                        "s.json", JsonSource::user),
+                             "s.json");
+  return spec;
+}
+
+TEST_F(Runs, BecomeADataSet) {
+  const Spec spec = tiny_spec();
+  const auto planned = plan(spec);
+  ASSERT_EQ(planned.size(), 6u);  // 3 tests on 2 packings
+  ProgressPrinter quiet(stderr, true);
+  Session session{"test", 2, false, {}, quiet, {}};
+  const RunStore store(folder_, "runs");
+  fs::create_directory(folder_ / "dataset");
+  RunCounts counts;
+  const Dataset first = run_planned(planned, Json(spec_to_json(spec)), folder_ / "dataset", store, session, counts);
+  EXPECT_EQ(counts.runs, 6u);  // 2 preparations, 4 tests; ISO costs nothing
+  EXPECT_EQ(counts.found, 0u);
+  EXPECT_EQ(first.tests[0].record.name, "ISO-unloading-s1");
+  EXPECT_EQ(first.tests[2].record.role, Role::validation);
+  EXPECT_EQ(first.seeds, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(read_dataset(folder_ / "dataset").digest, first.digest);
+  const TestRecord& iso = first.tests[0].record;
+  EXPECT_NEAR(iso.rows.front().nu, 0.82, 1e-12);
+  EXPECT_NEAR(iso.rows.back().nu, 0.70, 1e-12);
+
+  // the same in another order of scheduling, then fewer tests: stale series go
+  session.threads = 1;
+  RunCounts again;
+  const Dataset second = run_planned(planned, Json(spec_to_json(spec)), folder_ / "dataset", store, session, again);
+  EXPECT_EQ(again.found, 6u);
+  EXPECT_EQ(second.digest, first.digest);
+  RunCounts fewer;
+  run_planned({planned[0], planned[1]}, Json(spec_to_json(spec)), folder_ / "dataset", store, session, fewer);
+  EXPECT_FALSE(fs::exists(folder_ / "dataset" / "D2-0.74-s2.csv"));
+  EXPECT_EQ(read_dataset(folder_ / "dataset").tests.size(), 2u);
+}
+
+TEST_F(Runs, OfPredictionsUseNewPackings) {
+  const Spec spec = tiny_spec();
+  PathFile path{d2(0.75), {}, {}};
+  EXPECT_EQ(new_seeds(spec, path, {}, "p.json"), (std::vector<std::uint64_t>{3, 4}));
+  path.seeds = {11};
+  EXPECT_EQ(new_seeds(spec, path, {}, "p.json"), std::vector<std::uint64_t>{11});
+  EXPECT_EQ(new_seeds(spec, path, {12, 13}, "p.json"), (std::vector<std::uint64_t>{12, 13}));
+  EXPECT_NE(refusal([&] { new_seeds(spec, path, {5, 2}, "p.json"); }).find("p.json: seeds: 2 was used for the calibration"), std::string::npos);
+  EXPECT_NE(refusal([&] { new_seeds(spec, path, {5, 5}, "p.json"); }).find("given twice"), std::string::npos);
+
+  const auto tests = plan(spec, path, {11, 12}, "p.json");
+  ASSERT_EQ(tests.size(), 2u);
+  EXPECT_EQ(tests[0].name, "D2-0.75-s11");
+  EXPECT_EQ(tests[0].role, Role::validation);
+  EXPECT_EQ(tests[0].preparation.keep_unloading, (std::vector<double>{0.75, 0.76}));
+  // paths that start at densities of `keep` share their preparations
+  const auto a = plan(spec, {d2(0.76), {}, {}}, {11}, "p.json");
+  EXPECT_EQ(a[0].preparation.keep_unloading, std::vector<double>{0.76});
+  EXPECT_NE(refusal([&] { plan(spec, {d2(0.69), {}, {}}, {11}, "p.json"); }).find("0.69 is not on the unloading branch"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace grainlaw::app
