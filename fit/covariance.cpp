@@ -25,7 +25,7 @@ PseudoInverse pseudo_inverse(const Eigen::MatrixXd& J) {
     if (!(norm > 0)) result.identified[static_cast<std::size_t>(k)] = false;
   }
   const Eigen::MatrixXd scaled = J * inverse_norm.asDiagonal();
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& sigma = svd.singularValues();
   Eigen::VectorXd inverse_square = Eigen::VectorXd::Zero(sigma.size());
   Eigen::MatrixXd null_part = Eigen::MatrixXd::Identity(p, p);
