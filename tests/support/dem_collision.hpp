@@ -6,21 +6,21 @@
 namespace grainlaw::dem::scene {
 
 struct Encounter {
-  double r_i = 1e-3, r_j = 1e-3;                      ///< [m]
-  Material material{2000, 1e8, 1, 0};                 ///< no drag: a free collision
-  double steps_per_collision = 50.5;                  ///< t_c/dt
-  double phase = 0;                                   ///< part of a step that passes before the spheres touch [0..1)
-  Eigen::Vector3d line = Eigen::Vector3d::UnitX();    ///< unit vector from j to i at first touch
+  double r_i = 1e-3, r_j = 1e-3;                         ///< [m]
+  Material material{2000, 1e8, 1, 0};                    ///< no drag: a free collision
+  double steps_per_collision = 50.5;                     ///< t_c/dt
+  double phase = 0;                                      ///< part of a step that passes before the spheres touch [0..1)
+  Eigen::Vector3d line = Eigen::Vector3d::UnitX();       ///< unit vector from j to i at first touch
   Eigen::Vector3d approach = -Eigen::Vector3d::UnitX();  ///< v_i - v_j [m/s], approach . line < 0
-  Eigen::Vector3d boost = Eigen::Vector3d::Zero();    ///< velocity of the centre of mass [m/s]
+  Eigen::Vector3d boost = Eigen::Vector3d::Zero();       ///< velocity of the centre of mass [m/s]
 };
 
 struct Outcome {
-  double e = 0;                 ///< -(relative velocity along the line of centres after)/(before) [-]
-  double duration = 0;          ///< from first touch to separation [s]
-  Eigen::Vector3d departure = Eigen::Vector3d::Zero();  ///< v_i - v_j after [m/s]
+  double e = 0;         ///< -(relative velocity along the line of centres after)/(before) [-]
+  double duration = 0;  ///< from first touch to separation [s]
+  Eigen::Vector3d departure = Eigen::Vector3d::Zero();        ///< v_i - v_j after [m/s]
   Eigen::Vector3d momentum_change = Eigen::Vector3d::Zero();  ///< [kg m/s]
-  double momentum_scale = 0;    ///< sum of |p| before [kg m/s]
+  double momentum_scale = 0;                                  ///< sum of |p| before [kg m/s]
 };
 
 /// Lets the pair collide in the middle of a cell of 20 mm.

@@ -15,8 +15,8 @@ namespace grainlaw::dem::scene {
 
 struct Family {
   std::string name;
-  double w = 3;             ///< r_max/r_min of the uniform distribution [-]
-  double intruder = 0;      ///< radius of sphere 0 over the mean radius of the others; 0: none
+  double w = 3;         ///< r_max/r_min of the uniform distribution [-]
+  double intruder = 0;  ///< radius of sphere 0 over the mean radius of the others; 0: none
   Eigen::Matrix3d shape = Eigen::Matrix3d::Identity();  ///< shape of the cell
 };
 

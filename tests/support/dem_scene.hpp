@@ -88,7 +88,9 @@ inline Eigen::Matrix3d random_shape(double aspect, double shear, Draw& draw) {
   return H;
 }
 
-inline CellMotion at_rest(const State& state) { return {state.packing.H, Eigen::Matrix3d::Zero(), Transport::homogeneous}; }
+inline CellMotion at_rest(const State& state) {
+  return {state.packing.H, Eigen::Matrix3d::Zero(), Transport::homogeneous};
+}
 
 /// The state made ready in a cell at rest. The forces are made anew.
 inline Simulation start(State state, double time_step_fraction = 0.02, int threads = 1) {

@@ -83,7 +83,8 @@ TEST(Drive, VelocityGradientIsTheRateOfTheCell) {
 TEST(Drive, DurationFollowsFromThePeakRate) {
   // g = max(|eps_vol|, eps_dev): ISO 3 e, UNI e, D2 sqrt(3) e, D3 1.5 e
   const DriveOptions options;
-  for (const auto& [mode, g] : {std::pair{Mode::ISO, 3.0}, {Mode::UNI, 1.0}, {Mode::D2, std::sqrt(3.0)}, {Mode::D3, 1.5}}) {
+  for (const auto& [mode, g] :
+       {std::pair{Mode::ISO, 3.0}, {Mode::UNI, 1.0}, {Mode::D2, std::sqrt(3.0)}, {Mode::D3, 1.5}}) {
     EXPECT_NEAR(drive_of(mode, false, 0.1).duration, kPi / 2 * g * 0.1 / options.strain_rate, 1e-16);
     EXPECT_NEAR(drive_of(mode, false, 0.1, Profile::constant).duration, g * 0.1 / options.strain_rate, 1e-16);
   }
@@ -91,7 +92,8 @@ TEST(Drive, DurationFollowsFromThePeakRate) {
   const Drive small = drive_of(Mode::UNI, false, 1e-4);
   EXPECT_NEAR(path_parameter_rate(small, small.duration / 2), options.strain_rate, 1e-3 * options.strain_rate);
   const Drive steady = drive_of(Mode::D2, false, 0.3, Profile::constant);
-  EXPECT_NEAR(path_parameter_rate(steady, 0.3 * steady.duration) * std::sqrt(3.0), options.strain_rate, 1e-12 * options.strain_rate);
+  EXPECT_NEAR(path_parameter_rate(steady, 0.3 * steady.duration) * std::sqrt(3.0), options.strain_rate,
+              1e-12 * options.strain_rate);
 }
 
 // Table of the paper: uniaxial compression 0.64 -> 0.82 within T/2 = 2500 us has its peak rate, per initial edge, at
@@ -118,7 +120,8 @@ TEST(Drive, TransportIsPassedOn) {
 
 TEST(Drive, RefusesWhatItCannotDrive) {
   StraightSegment segment = scene::segment_of(direction_of(Mode::D2).tensor, 0.1, 0.7);
-  for (const double rate : {0.0, -138.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double rate :
+       {0.0, -138.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     DriveOptions options;
     options.strain_rate = rate;
     EXPECT_THROW(make_drive(segment, options, kCell), InvalidInput) << rate;

@@ -32,7 +32,8 @@ TEST(NeighbourList, PairAcrossTheFace) {
 }
 
 TEST(NeighbourList, SkinDecidesWhoIsListed) {
-  const State state = scene::state_of(scene::cubic(20e-3), {{1e-3, {5e-3, 5e-3, 5e-3}}, {1.5e-3, {7.8e-3, 5e-3, 5e-3}}});
+  const State state =
+      scene::state_of(scene::cubic(20e-3), {{1e-3, {5e-3, 5e-3, 5e-3}}, {1.5e-3, {7.8e-3, 5e-3, 5e-3}}});
   ThreadTeam team(1);
   EXPECT_EQ(build_list(state.packing, 0.29e-3, team).j.size(), 0U);
   EXPECT_EQ(build_list(state.packing, 0.31e-3, team).j.size(), 2U);
@@ -43,8 +44,9 @@ TEST(NeighbourList, OneSphereAndItsOwnImages) {
   const State state = scene::state_of(scene::cubic(2.1e-3), {{1e-3, {1e-3, 1e-3, 1e-3}}});
   ThreadTeam team(1);
   const NeighbourList list = build_list(state.packing, 0.2e-3, team);
-  EXPECT_EQ(entries(list, 0), (std::vector<Entry>{
-                                  {0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, -1}, {0, 0, 0, 1}, {0, 0, 1, 0}, {0, 1, 0, 0}}));
+  EXPECT_EQ(
+      entries(list, 0),
+      (std::vector<Entry>{{0, -1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, -1}, {0, 0, 0, 1}, {0, 0, 1, 0}, {0, 1, 0, 0}}));
 }
 
 TEST(NeighbourList, SortedByNeighbourThenImage) {
@@ -109,7 +111,8 @@ TEST(AllowedDisplacement, FallsWithTheSmallestStretch) {
   EXPECT_NEAR(allowed_displacement(list, H, squeezed), exact(0.95), 1e-17);
   const Eigen::Matrix3d crushed = Eigen::Vector3d(1, 0.8, 1).asDiagonal() * H;
   EXPECT_LT(allowed_displacement(list, H, crushed), 0) << "the deformation alone invalidates the list";
-  EXPECT_LE(allowed_displacement(list, H, Eigen::Matrix3d(1.5 * H)), exact(1)) << "growth gives no room to small spheres";
+  EXPECT_LE(allowed_displacement(list, H, Eigen::Matrix3d(1.5 * H)), exact(1))
+      << "growth gives no room to small spheres";
   Eigen::Matrix3d F = Eigen::Matrix3d::Identity();
   const double g = 0.05;
   F(0, 2) = g;  // simple shear: sigma_min = sqrt(1 + g^2/4) - g/2

@@ -17,7 +17,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 Packing two_spheres() {
-  return scene::state_of(scene::cubic(10e-3), {{1e-3, {2e-3, 3e-3, 4e-3}, {1, 2, 3}}, {2e-3, {7e-3, 8e-3, 9e-3}, {-1, 0, 1}}})
+  return scene::state_of(scene::cubic(10e-3),
+                         {{1e-3, {2e-3, 3e-3, 4e-3}, {1, 2, 3}}, {2e-3, {7e-3, 8e-3, 9e-3}, {-1, 0, 1}}})
       .packing;
 }
 
@@ -84,8 +85,8 @@ TEST(Packing, CheckNamesSphereAndQuantity) {
   }
   EXPECT_NE(message([](Packing& p) { p.sx.pop_back(); }).find("length"), std::string::npos);
   EXPECT_NE(message([](Packing& p) { p.id.pop_back(); }).find("length"), std::string::npos);
-  for (const auto& [row, column, value] :
-       std::vector<std::tuple<int, int, double>>{{1, 0, 1e-3}, {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0}, {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}}) {
+  for (const auto& [row, column, value] : std::vector<std::tuple<int, int, double>>{
+           {1, 0, 1e-3}, {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0}, {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}}) {
     EXPECT_NE(message([&](Packing& p) { p.H(row, column) = value; }).find("cell"), std::string::npos);
   }
 }
@@ -98,7 +99,8 @@ TEST(Packing, MinCollisionTimeIsThatOfTheTwoLightest) {
   set_masses(p, material);
   double least = kInf;
   for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < i; ++j) least = std::min(least, collision_time(material, reduced_mass(p.mass[i], p.mass[j])));
+    for (std::size_t j = 0; j < i; ++j)
+      least = std::min(least, collision_time(material, reduced_mass(p.mass[i], p.mass[j])));
   }
   EXPECT_DOUBLE_EQ(min_collision_time(p, material), least);
   resize(p, 1);

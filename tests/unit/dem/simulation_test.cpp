@@ -77,7 +77,8 @@ TEST(StartSimulation, ViscousForceMayTurnAttractive) {
 
 TEST(StartSimulation, RefusesBadSteps) {
   const State state = touching({1, 0, 0}, {0, 0, 0});
-  for (const double fraction : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double fraction :
+       {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(scene::start(state, fraction), InvalidInput) << fraction;
   }
   const State overdamped = touching({1, 0, 0}, {0, 0, 0}, {2000, 1e8, 100, 0});
@@ -106,8 +107,8 @@ TEST(StartSimulation, D18CoincidingSpheresAreNamed) {
 
 // D17: a small sphere inside a big one is pushed out along the line of centres, with k (r_i + r_j - distance).
 TEST(StartSimulation, D17DeepOverlapRepels) {
-  const Simulation sim =
-      scene::start(scene::state_of(kBox, {{5e-3, {10e-3, 10e-3, 10e-3}}, {0.5e-3, {10e-3, 11e-3, 10e-3}}}, {2000, 1e8, 0.5, 0}));
+  const Simulation sim = scene::start(
+      scene::state_of(kBox, {{5e-3, {10e-3, 10e-3, 10e-3}}, {0.5e-3, {10e-3, 11e-3, 10e-3}}}, {2000, 1e8, 0.5, 0}));
   EXPECT_NEAR(force_on(sim, 1).y(), 1e8 * 4.5e-3, 1e-6);
   EXPECT_EQ(sim.force[0][1], -sim.force[1][1]);
 }
@@ -169,7 +170,8 @@ TEST(Ledger, KineticEnergy) {
 // A damped pair in a box at rest ends apart and slower: what it lost is in the account.
 TEST(Ledger, FreeCollisionLosesWhatTheRestitutionSays) {
   const Material material{2000, 1e8, 1, 0};
-  State state = scene::state_of(kBox, {{1e-3, {8e-3, 10e-3, 10e-3}, {1, 0, 0}}, {1e-3, {10.01e-3, 10e-3, 10e-3}, {-1, 0, 0}}}, material);
+  State state = scene::state_of(
+      kBox, {{1e-3, {8e-3, 10e-3, 10e-3}, {1, 0, 0}}, {1e-3, {10.01e-3, 10e-3, 10e-3}, {-1, 0, 0}}}, material);
   Simulation sim = scene::start(state, 1 / 200.3);
   open_ledger(sim);
   const double E_0 = sim.state.ledger.E_kin_start, e = restitution(material, state.packing.mass[0] / 2);

@@ -20,9 +20,11 @@ using testing::figure;
 
 /// F(u), u in [0, 1]: out and back, F(0) = F(1) = 1.
 Eigen::Matrix3d deformation(double u) {
-  const double bump = std::sin(std::numbers::pi * u) * std::sin(std::numbers::pi * u), twist = std::sin(2 * std::numbers::pi * u);
+  const double bump = std::sin(std::numbers::pi * u) * std::sin(std::numbers::pi * u),
+               twist = std::sin(2 * std::numbers::pi * u);
   Eigen::Matrix3d F;
-  F << std::exp(0.4 * bump), 0.6 * twist, -0.5 * bump, 0, std::exp(-0.3 * twist), 0.7 * bump, 0, 0, std::exp(-0.25 * bump);
+  F << std::exp(0.4 * bump), 0.6 * twist, -0.5 * bump, 0, std::exp(-0.3 * twist), 0.7 * bump, 0, 0,
+      std::exp(-0.25 * bump);
   return F;
 }
 
@@ -95,9 +97,7 @@ TEST(AffineMotion, FluctuationIsCarriedWithTheCell) {
   EXPECT_NEAR(std::log(coarse / fine) / std::log(4.0), 2, 0.1);
 }
 
-TEST(AffineMotion, WallDrivenSpheresKeepTheirPlace) {
-  EXPECT_LE(drift_error(Transport::wall, 50), 1e-16);
-}
+TEST(AffineMotion, WallDrivenSpheresKeepTheirPlace) { EXPECT_LE(drift_error(Transport::wall, 50), 1e-16); }
 
 TEST(AffineMotion, WallDrivenSphereReentersWithItsVelocity) {
   // The edge sweeps over a resting sphere: it re-enters on the other side, where the cell begins, and stays at rest.
@@ -132,7 +132,8 @@ TEST(AffineMotion, DragDecaysExponentially) {
     open_ledger(sim);
     scene::advance_at_rest(sim, steps);
     const Eigen::Vector3d exact = std::exp(-1.0) * Eigen::Vector3d(3, -2, 1);
-    EXPECT_NEAR(sim.state.ledger.D_background, 0.5 * m * 14 * (1 - std::exp(-2.0)), 0.5 * m * 14 * 3.0 / (steps * steps));
+    EXPECT_NEAR(sim.state.ledger.D_background, 0.5 * m * 14 * (1 - std::exp(-2.0)),
+                0.5 * m * 14 * 3.0 / (steps * steps));
     return (scene::velocity(sim.state.packing, 0) - exact).norm() / exact.norm();
   };
   EXPECT_LE(error(100), 1e-5);

@@ -54,8 +54,8 @@ INSTANTIATE_TEST_SUITE_P(D20, ContactNumbers, ::testing::ValuesIn(scene::familie
 
 TEST(ContactNumbersOfFew, D22AllRattlers) {
   // A chain of three: 1, 2 and 1 contacts.
-  const State state = scene::state_of(scene::cubic(20e-3), {{1e-3, {5e-3, 5e-3, 5e-3}}, {1e-3, {6.9e-3, 5e-3, 5e-3}},
-                                                            {1e-3, {8.8e-3, 5e-3, 5e-3}}});
+  const State state = scene::state_of(
+      scene::cubic(20e-3), {{1e-3, {5e-3, 5e-3, 5e-3}}, {1e-3, {6.9e-3, 5e-3, 5e-3}}, {1e-3, {8.8e-3, 5e-3, 5e-3}}});
   const Observation seen = seen_at_rest(state);
   EXPECT_DOUBLE_EQ(seen.C_r, 4.0 / 3);
   EXPECT_EQ(seen.C, 0);
@@ -68,11 +68,9 @@ TEST(ContactNumbersOfFew, D22AllRattlers) {
 TEST(ContactNumbersOfFew, D22RattlersAreNotRemovedIteratively) {
   // One sphere touched by four others, which touch nothing else: it stays although they are rattlers.
   const double d = 1.9e-3, x = 10e-3;
-  const State state = scene::state_of(scene::cubic(20e-3), {{1e-3, {x, x, x}},
-                                                            {1e-3, {x + d, x, x}},
-                                                            {1e-3, {x - d, x, x}},
-                                                            {1e-3, {x, x + d, x}},
-                                                            {1e-3, {x, x - d, x}}});
+  const State state = scene::state_of(
+      scene::cubic(20e-3),
+      {{1e-3, {x, x, x}}, {1e-3, {x + d, x, x}}, {1e-3, {x - d, x, x}}, {1e-3, {x, x + d, x}}, {1e-3, {x, x - d, x}}});
   const Observation seen = seen_at_rest(state);
   EXPECT_EQ(seen.C_star, 4);
   EXPECT_DOUBLE_EQ(seen.C, 0.8);

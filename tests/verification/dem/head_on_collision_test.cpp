@@ -106,8 +106,7 @@ TEST(HeadOnCollision, D2WholeStepsPerCollisionHideTheError) {
 TEST(HeadOnCollision, D3ContactEndsAtOverlapZero) {
   const double eta = eta_of(1e-3, 1), omega0 = omega0_of(1e-3), omega = std::sqrt(omega0 * omega0 - eta * eta);
   const double at_overlap_zero = exact_restitution(1e-3, 1);
-  const double t_force_zero =
-      (std::numbers::pi - std::atan2(2 * eta * omega, omega * omega - eta * eta)) / omega;
+  const double t_force_zero = (std::numbers::pi - std::atan2(2 * eta * omega, omega * omega - eta * eta)) / omega;
   const double at_force_zero = std::exp(-eta * t_force_zero);
   EXPECT_NEAR(at_overlap_zero, 0.926101, 5e-7);
   EXPECT_NEAR(at_force_zero, 0.927207, 5e-7);

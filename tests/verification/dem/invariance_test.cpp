@@ -44,7 +44,8 @@ Drive uniaxial(const State& state) {
 }
 
 void advance_along(Simulation& sim, const Drive& drive, int from, int to) {
-  for (int k = from; k < to; ++k) advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+  for (int k = from; k < to; ++k)
+    advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
 }
 
 /// Every bit that the state's future depends on.

@@ -73,14 +73,12 @@ TEST_P(LatticeTest, D11StaysInEquilibrium) {
   EXPECT_LE(kinetic_energy(sim.state.packing), 1e-24 * sim.state.sums.E_pot);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cubic, LatticeTest,
-                         ::testing::Values(Lattice{"sc", {{0, 0, 0}}, 6, 1},
-                                           Lattice{"bcc", {{0, 0, 0}, {0.5, 0.5, 0.5}}, 8, std::sqrt(3.0) / 2},
-                                           Lattice{"fcc",
-                                                   {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 0, 0.5}, {0, 0.5, 0.5}},
-                                                   12,
-                                                   1 / std::sqrt(2.0)}),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Cubic, LatticeTest,
+    ::testing::Values(Lattice{"sc", {{0, 0, 0}}, 6, 1},
+                      Lattice{"bcc", {{0, 0, 0}, {0.5, 0.5, 0.5}}, 8, std::sqrt(3.0) / 2},
+                      Lattice{"fcc", {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 0, 0.5}, {0, 0.5, 0.5}}, 12, 1 / std::sqrt(2.0)}),
+    [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(SelfImages, ShearedSimpleLatticeTouchesItsImages) {
   // One sphere in a rhombohedral cell with angles of 60 degrees is the fcc lattice again: 12 own images.

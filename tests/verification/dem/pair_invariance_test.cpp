@@ -73,21 +73,21 @@ TEST_P(ObliquePair, D4SameInAMovingFrame) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, ObliquePair,
-                         ::testing::Values(std::pair{0.5e-3, 0.5e-3}, std::pair{0.5e-3, 1.5e-3}));
+INSTANTIATE_TEST_SUITE_P(Pairs, ObliquePair, ::testing::Values(std::pair{0.5e-3, 0.5e-3}, std::pair{0.5e-3, 1.5e-3}));
 
 TEST(PairInvariance, D4MomentumDriftOverAMillionSteps) {
   const double edge = 4e-3;
   const Material material{2000, 1e8, 0, 0};  // undamped: the two go on colliding through the periodic cell
-  Simulation sim = scene::start(scene::state_of(scene::cubic(edge),
-                                                {{0.5e-3, {1e-3, 1e-3, 1e-3}, {11, 7, -13}},
-                                                 {1.5e-3, {3e-3, 2.5e-3, 3e-3}, {-5, 4, 6}}},
-                                                material));
+  Simulation sim = scene::start(scene::state_of(
+      scene::cubic(edge), {{0.5e-3, {1e-3, 1e-3, 1e-3}, {11, 7, -13}}, {1.5e-3, {3e-3, 2.5e-3, 3e-3}, {-5, 4, 6}}},
+      material));
   const Packing& p = sim.state.packing;
   const auto momentum = [&] {
     return Eigen::Vector3d(p.mass[0] * scene::velocity(p, 0) + p.mass[1] * scene::velocity(p, 1));
   };
-  const auto scale = [&] { return p.mass[0] * scene::velocity(p, 0).norm() + p.mass[1] * scene::velocity(p, 1).norm(); };
+  const auto scale = [&] {
+    return p.mass[0] * scene::velocity(p, 0).norm() + p.mass[1] * scene::velocity(p, 1).norm();
+  };
   const Eigen::Vector3d before = momentum();
   double largest = scale();
   const Eigen::Vector3d v_start = scene::velocity(p, 0);

@@ -54,14 +54,14 @@ TEST_P(PairListOfFamily, SmallSpheresInAGrowingCell) {
       moved.packing.H = stretch * ref_H;
       const double allowed = allowed_displacement(list, ref_H, moved.packing.H);
       ASSERT_GT(allowed, 0);
-      const Eigen::Matrix3d inverse =
-          moved.packing.H.triangularView<Eigen::Upper>().solve(Eigen::Matrix3d::Identity());
+      const Eigen::Matrix3d inverse = moved.packing.H.triangularView<Eigen::Upper>().solve(Eigen::Matrix3d::Identity());
       for (int k = 0; k < 5; ++k) {
         for (std::size_t i = 0; i < p.size(); ++i) {
           const Eigen::Vector3d step = 0.999 * allowed * draw.vector(-1, 1).normalized();
           scene::place(moved.packing, i, scene::fraction(p, i) + inverse * step);
         }
-        ASSERT_EQ(scene::contacts_missed(list, moved.packing), 0) << "stretch " << stretch << ", skin " << skin_fraction;
+        ASSERT_EQ(scene::contacts_missed(list, moved.packing), 0)
+            << "stretch " << stretch << ", skin " << skin_fraction;
       }
     }
   }

@@ -34,7 +34,7 @@ Vector6 flow(const Row3& row, const Vector6& y, const std::array<bool, 2>& close
     for (const int i : {c, c + 1}) {
       const double sign = (i == c ? -1 : 1) / row.mass(i);
       const double k = row.material.stiffness, gamma = row.material.contact_viscosity;
-      A(3 + i, c) += sign * k, A(3 + i, c + 1) -= sign * k;          // k (touch - x_{c+1} + x_c)
+      A(3 + i, c) += sign * k, A(3 + i, c + 1) -= sign * k;  // k (touch - x_{c+1} + x_c)
       A(3 + i, 3 + c) += sign * gamma, A(3 + i, 4 + c) -= sign * gamma;
       b(3 + i) += sign * k * row.touch(c);
     }
