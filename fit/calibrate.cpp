@@ -83,6 +83,18 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
   }
 }
 
+/// Laws of Eq. (20) of which not one shear test says anything.
+std::vector<std::string> unseen_laws(const std::vector<ShearFit>& shear) {
+  std::vector<std::string> names;
+  for (const ShearQuantity& quantity : kShearQuantities) {
+    const bool seen = std::any_of(shear.begin(), shear.end(), [&](const ShearFit& fit) {
+      return (fit.*quantity.estimate).status != Status::not_identified;
+    });
+    if (!seen) names.push_back(quantity.name);
+  }
+  return names;
+}
+
 void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& calibration,
                     const CalibrationOptions& options) {
   const auto estimate = [&](const char* name) -> Estimate& { return calibration.estimates[parameter_index(name)]; };
@@ -135,12 +147,22 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   fit_shear_laws(data, calibration, options, control);
   const std::vector<Trajectory> trajectories =
       trajectories_of(data, calibration.parameters.isotropic.pressure.nu_c, options);
-  record(calibration, fit_evolution(trajectories, calibration.parameters, options, control));
+  record(calibration,
+         fit_evolution(trajectories, calibration.parameters, unseen_laws(calibration.shear), options, control));
   set_anisotropy(trajectories, calibration, options);
   set_ranges(trajectories, calibration);
   calibration.converged = std::all_of(calibration.stages.begin(), calibration.stages.end(),
                                       [](const Stage& stage) { return stage.converged; });
   return calibration;
+}
+
+bool has_values(const Calibration& calibration, std::string_view group) {
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const std::string_view name = parameter_table()[i].name;
+    const bool member = name.starts_with(group) && (name.size() == group.size() || name[group.size()] == '.');
+    if (member && calibration.estimates[i].status == Status::not_identified) return false;
+  }
+  return true;
 }
 
 }  // namespace grainlaw::fit

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fit/options.hpp"
@@ -37,5 +38,8 @@ struct Calibration {
 /// Throws Interrupted. A stage that does not converge is reported, not thrown.
 Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOptions& options,
                       const RunControl& control);
+
+/// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
+bool has_values(const Calibration& calibration, std::string_view group);
 
 }  // namespace grainlaw::fit

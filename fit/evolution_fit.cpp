@@ -28,15 +28,16 @@ constexpr std::array<Pair, 2> kPairs{{
     {"fabric_max", "fabric_rate", &LawParameters<double>::fabric_rate, false},
 }};
 
-void withdraw(StageFit& fit, const std::string& law, const std::string& note) {
-  for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) fit.mark_not_identified(law + part, note);
-}
-
 Eigen::Index index_of(const StageFit& fit, const std::string& name) {
   for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
     if (fit.stage.estimates[k].name == name) return static_cast<Eigen::Index>(k);
   }
   return -1;
+}
+
+void withdraw(StageFit& fit, const std::string& law, const std::string& note) {
+  if (index_of(fit, law + ".Q_limit") < 0) return;  // held, the stage before has said why
+  for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) fit.mark_not_identified(law + part, note);
 }
 
 /// Densities at which shear at constant volume goes on for long enough to tell the limit from the slope. `channel` of the
@@ -71,6 +72,7 @@ void judge_pair(StageFit& fit, const std::vector<Trajectory>& trajectories, cons
                 const Pair& pair, const CalibrationOptions& options) {
   // What a change of all rates by the same factor would do.
   const Eigen::Index i = index_of(fit, std::string(pair.rate) + ".Q_limit");
+  if (i < 0) return;  // held
   const Solution& solution = fit.solution;
   const double Q_limit = solution.x(i), Q_c = solution.x(i + 1), alpha = solution.x(i + 2);
   const Eigen::VectorXd felt =
@@ -127,11 +129,12 @@ bool contains_anisotropy(const std::vector<Trajectory>& trajectories) {
 }
 
 StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                       const CalibrationOptions& options, const RunControl& control) {
+                       std::vector<std::string> held, const CalibrationOptions& options, const RunControl& control) {
   const bool energy = options.coupling == Coupling::energy;
   const std::string coupling = energy ? "anisotropy.a2" : "anisotropy.a0";
   const bool anisotropy = contains_anisotropy(trajectories);
-  const EvolutionProblem problem = evolution_problem(trajectories, law, anisotropy, options);
+  if (!anisotropy) held.push_back(coupling);
+  const EvolutionProblem problem = evolution_problem(trajectories, law, held, options);
   StageFit fit = fit_stage("evolution", window_text(options), problem.parameters, problem.blocks,
                            "the trajectories do not determine it; test more densities, and D2 to steady state",
                            options.threads, control);

@@ -19,9 +19,10 @@ struct EvolutionProblem {
   std::vector<ResidualBlock> blocks;  ///< one per trajectory
 };
 
-/// Starts from `start`; parameters that are not free keep its values. `anisotropy_free`: a2 or a0 is free.
+/// Starts from `start`; parameters that are not free keep its values. `held`: names of laws of Eq. (20), or the name of
+/// the coupling's parameter, that are not free.
 EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                                   bool anisotropy_free, const CalibrationOptions& options);
+                                   const std::vector<std::string>& held, const CalibrationOptions& options);
 
 /// True when a trajectory changes the volume of a state with fabric along its test's shear: only then the coupling of
 /// fabric and volumetric strain is in the data.
@@ -29,8 +30,9 @@ bool contains_anisotropy(const std::vector<Trajectory>& trajectories);
 
 /// Stage "evolution"; `law` holds the start and takes the result. Claims are withdrawn where the data cannot carry them:
 /// saturation shown at fewer than three densities, a rate that acts on nothing, no path that identifies the coupling.
+/// Laws of which no shear test shows anything (`held`) stay as they are.
 StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                       const CalibrationOptions& options, const RunControl& control);
+                       std::vector<std::string> held, const CalibrationOptions& options, const RunControl& control);
 
 /// a1 = mean of A1/(B F_N) over steady shear by the identity A1 = (2/3)(A2 - sigma_dev): tied to a2, Coupling::energy.
 /// Its error comes from a2's and from the scatter of the ratio over tests.

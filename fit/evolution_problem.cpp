@@ -12,12 +12,15 @@ constexpr int kMostParameters = 16;
 using Jet = ceres::Jet<double, kMostParameters>;
 constexpr double kNearestJamming = 1e-4;  // nu - nu_c that the lowest row keeps
 
-std::vector<std::string> free_names(Coupling coupling, bool anisotropy_free) {
+std::vector<std::string> free_names(Coupling coupling, const std::vector<std::string>& held) {
   std::vector<std::string> names{"pressure.p0", "pressure.gamma_p", "pressure.nu_c"};
-  for (const char* law : {"stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"}) {
-    for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) names.push_back(std::string(law) + part);
+  const auto is_free = [&](const std::string& name) { return std::find(held.begin(), held.end(), name) == held.end(); };
+  for (const std::string law : {"stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"}) {
+    if (!is_free(law)) continue;
+    for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) names.push_back(law + part);
   }
-  if (anisotropy_free) names.push_back(coupling == Coupling::energy ? "anisotropy.a2" : "anisotropy.a0");
+  const std::string anisotropy = coupling == Coupling::energy ? "anisotropy.a2" : "anisotropy.a0";
+  if (is_free(anisotropy)) names.push_back(anisotropy);
   return names;
 }
 
@@ -101,11 +104,11 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
 }  // namespace
 
 EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                                   bool anisotropy_free, const CalibrationOptions& options) {
+                                   const std::vector<std::string>& held, const CalibrationOptions& options) {
   EvolutionProblem problem;
   std::vector<std::size_t> index;
   const auto value = fields(start);
-  for (const std::string& name : free_names(options.coupling, anisotropy_free)) {
+  for (const std::string& name : free_names(options.coupling, held)) {
     index.push_back(parameter_index(name));
     FreeParameter p = free_parameter(name, *value[index.back()]);
     if (name == "pressure.nu_c")

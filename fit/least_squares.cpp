@@ -22,9 +22,10 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kGradientCosine = 1e-6;  // |cos| between the residual and every column of J at a true minimum
+constexpr double kGradientCosine = 1e-5;  // |cos| between the residual and every column of J at a true minimum
 constexpr double kExact = 1e-9;           // misfit over data below which the cosine is that of rounding errors
 constexpr double kOnBound = 1e-7;         // distance in units of the parameter's scale
+constexpr double kSettled = 1e-9;         // relative decrease of the cost over a whole round that is none
 constexpr int kIterationsPerRound = 8, kRounds = 60;
 
 /// All blocks as one cost function of x/scale.
@@ -275,13 +276,18 @@ Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<R
     if (!solution.defined) throw Error("fit: stage " + stage + " has no finite value at its own solution");
     z = solution.x.cwiseQuotient(scale);
     const std::vector<int> next = held_by_bounds(solution, parameters);
-    const bool settled = summary.termination_type == ceres::CONVERGENCE && is_minimum(solution, unit, next);
+    const bool stopped = summary.termination_type == ceres::CONVERGENCE;
+    // Flat valleys, as of a rate that acts on next to nothing, are not walked to their end.
+    const bool flat = summary.initial_cost - summary.final_cost <= kSettled * summary.final_cost;
+    solution.converged = (stopped || flat) && is_minimum(solution, unit, next);
     solution.final_cost = summary.final_cost * unit * unit;
     solution.termination =
-        fmt::format("{}: {}", ceres::TerminationTypeToString(summary.termination_type), summary.message);
-    solution.converged = settled;
-    if (settled) break;
-    if (next == held && summary.termination_type == ceres::CONVERGENCE) {  // no better by trying again
+        stopped || !flat
+            ? fmt::format("{}: {}", ceres::TerminationTypeToString(summary.termination_type), summary.message)
+            : fmt::format("CONVERGENCE: the cost changed by less than {:g} of itself in {} iterations.", kSettled,
+                          kIterationsPerRound);
+    if (solution.converged) break;
+    if (next == held && stopped) {  // no better by trying again
       solution.termination += " (but the gradient does not vanish)";
       break;
     }

@@ -101,7 +101,7 @@ inline RecoveryCount recover_evolution(int starts, std::uint64_t seed) {
     law.isotropic.pressure.gamma_p = far.factor(law.isotropic.pressure.gamma_p);
     law.isotropic.pressure.nu_c = far.density(law.isotropic.pressure.nu_c);
     law.anisotropy.a2 = far.factor(law.anisotropy.a2);
-    const fit::StageFit fit = fit::fit_evolution(trajectories, law, calibration, {});
+    const fit::StageFit fit = fit::fit_evolution(trajectories, law, {}, calibration, {});
     bool recovered = true;
     for (const fit::NamedEstimate& e : fit.stage.estimates) {
       const std::size_t i = parameter_index(e.name);

@@ -32,7 +32,7 @@ const Estimate& estimate(const StageFit& fit, const std::string& name) {
 
 TEST(EvolutionFit, TruthHasNoMisfit) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
-  const EvolutionProblem problem = evolution_problem(all, kTruth, true, {});
+  const EvolutionProblem problem = evolution_problem(all, kTruth, {}, {});
   ASSERT_EQ(problem.parameters.size(), 16u);
   ASSERT_EQ(problem.blocks.size(), all.size());
   std::vector<double> x;
@@ -46,7 +46,7 @@ TEST(EvolutionFit, TruthHasNoMisfit) {
 
 TEST(EvolutionFit, PressureInShearIsShownAndNotFitted) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
-  for (const ResidualBlock& block : evolution_problem(all, kTruth, true, {}).blocks) {
+  for (const ResidualBlock& block : evolution_problem(all, kTruth, {}, {}).blocks) {
     const Channel& pressure = block.channels.at(0);
     ASSERT_EQ(pressure.quantity, "P_star");
     const double weight = block.weight.segment(pressure.first, pressure.rows).maxCoeff();
@@ -64,7 +64,7 @@ TEST(EvolutionFit, DilatancyDoesNotCorruptStressAndFabric) {
   options.dilatancy_strain = 0.05;
   const auto all = trajectories(testing::synthetic_dataset(kTruth, options));
   LawParameters<double> law = kTruth;
-  const StageFit fit = fit_evolution(all, law, {}, {});
+  const StageFit fit = fit_evolution(all, law, {}, {}, {});
   ASSERT_TRUE(fit.stage.converged) << fit.stage.termination;
   for (const double nu : {0.68, 0.74, 0.80}) {
     const auto near = [&](auto field, double tolerance) {
@@ -93,7 +93,7 @@ TEST(EvolutionFit, CouplingNeedsAPathThatChangesTheVolumeOfAShearedState) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, options));
   EXPECT_FALSE(contains_anisotropy(all));
   LawParameters<double> law = kTruth;
-  const StageFit fit = fit_evolution(all, law, {}, {});
+  const StageFit fit = fit_evolution(all, law, {}, {}, {});
   EXPECT_EQ(estimate(fit, "anisotropy.a2").status, Status::not_identified);
   EXPECT_NE(estimate(fit, "anisotropy.a2").note.find("then ISO"), std::string::npos);
   const Estimate a1 = tied_a1(all, law, estimate(fit, "anisotropy.a2"), {});
