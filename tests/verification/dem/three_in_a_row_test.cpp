@@ -76,7 +76,7 @@ Vector6 exact(const Row3& row, Vector6 y, double T) {
 constexpr double kEdge = 32e-3;
 constexpr double kSpeed = 0.25;
 
-/// Sphere 0 flies to the right and hits 1 and 2, which touch; `gap` ahead of the first touch. Fractions lie in [1/2, 1).
+/// Sphere 0 flies to the right and hits 1 and 2, which touch; it starts `gap` away. Fractions lie in [1/2, 1).
 State start_row(const Row3& row, double gap, bool mirrored) {
   std::vector<scene::Sphere> spheres(3);
   double x = 0.75 * kEdge - row.r[0] - gap;
