@@ -5,7 +5,8 @@
 //   f = (k delta + gamma d(delta)/dt) n_ij on i and -f on j,  d(delta)/dt = -u . n_ij
 //   u = v_i - v_j + L x_ij  (homogeneous)   or   v_i - v_j + L H (floor s_i - floor s_j - n)  (wall-driven)
 //   virial = sum_c f l,  F = (1/V) sum_p V_p sum_{c in p} n n
-//   u = v_i - v_j + L x_ij (homogeneous),  v_i - v_j + L H (floor s_i - floor s_j - n) (wall-driven)
+//   box power = -sum_c f n . (u - v_i + v_j),  contact dissipation = sum_c gamma (d(delta)/dt)^2
+//   E_pot = sum_c k delta^2/2
 // Equations (1), (5), (9). SI units, compression positive. Cost: seconds from some thousand spheres on.
 
 #include "dem/simulation.hpp"
