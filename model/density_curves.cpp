@@ -7,32 +7,32 @@ namespace grainlaw {
 const std::vector<DensityCurve>& density_curves() {
   using P = const LawParameters<double>&;
   static const std::vector<DensityCurve> curves{
-      {"C_star", {"coordination"}, [](P p, double nu) { return p.isotropic.coordination.C_star(nu); }},
-      {"rattler_fraction",
+      {"C_star", "{C}*", {"coordination"}, [](P p, double nu) { return p.isotropic.coordination.C_star(nu); }},
+      {"rattler_fraction", "{φ}_{r}",
        {"rattlers", "coordination"},
        [](P p, double nu) { return p.isotropic.rattlers.fraction(nu, p.isotropic.coordination.nu_c); }},
-      {"P_star", {"pressure", "coordination", "rattlers"}, [](P p, double nu) { return p.isotropic.P_star(nu); }},
-      {"steady_C_star", {"steady_coordination"}, [](P p, double nu) { return p.steady.coordination.C_star(nu); }},
-      {"steady_rattler_fraction",
+      {"P_star", "{P}*", {"pressure", "coordination", "rattlers"}, [](P p, double nu) { return p.isotropic.P_star(nu); }},
+      {"steady_C_star", "steady {C}*", {"steady_coordination"}, [](P p, double nu) { return p.steady.coordination.C_star(nu); }},
+      {"steady_rattler_fraction", "steady {φ}_{r}",
        {"steady_rattlers", "steady_coordination"},
        [](P p, double nu) { return p.steady.rattlers.fraction(nu, p.steady.coordination.nu_c); }},
-      {"steady_P_star",
+      {"steady_P_star", "steady {P}*",
        {"steady_pressure", "steady_coordination", "steady_rattlers"},
        [](P p, double nu) { return p.steady.P_star(nu); }},
-      {"stress_ratio_max", {"stress_ratio_max"}, [](P p, double nu) { return p.stress_ratio_max.value(nu, p.shear_nu_c); }},
-      {"stress_rate", {"stress_rate"}, [](P p, double nu) { return p.stress_rate.value(nu, p.shear_nu_c); }},
-      {"fabric_max", {"fabric_max"}, [](P p, double nu) { return p.fabric_max.value(nu, p.shear_nu_c); }},
-      {"fabric_rate", {"fabric_rate"}, [](P p, double nu) { return p.fabric_rate.value(nu, p.shear_nu_c); }}};
+      {"stress_ratio_max", "{s}_{max}", {"stress_ratio_max"}, [](P p, double nu) { return p.stress_ratio_max.value(nu, p.shear_nu_c); }},
+      {"stress_rate", "{β}_{s}", {"stress_rate"}, [](P p, double nu) { return p.stress_rate.value(nu, p.shear_nu_c); }},
+      {"fabric_max", "{F}_{max}", {"fabric_max"}, [](P p, double nu) { return p.fabric_max.value(nu, p.shear_nu_c); }},
+      {"fabric_rate", "{β}_{F}", {"fabric_rate"}, [](P p, double nu) { return p.fabric_rate.value(nu, p.shear_nu_c); }}};
   return curves;
 }
 
-std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, double nu_min, double nu_max, double step) {
+std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, double nu_min, double nu_max, int per_unit) {
   constexpr double slack = 1e-9;
   const LawParameters<double> published = published_parameters();
   std::vector<CurvePoint> points;
   for (const DensityCurve& curve : density_curves()) {
-    for (double k = std::ceil((nu_min - slack) / step); k * step <= nu_max + slack; ++k) {
-      points.push_back({&curve, k * step, curve.of(ours, k * step), curve.of(published, k * step)});
+    for (double k = std::ceil((nu_min - slack) * per_unit); k / per_unit <= nu_max + slack; ++k) {
+      points.push_back({&curve, k / per_unit, curve.of(ours, k / per_unit), curve.of(published, k / per_unit)});
     }
   }
   return points;

@@ -11,6 +11,7 @@ namespace grainlaw {
 
 struct DensityCurve {
   const char* quantity;             ///< name in files, e.g. "C_star", "stress_ratio_max"
+  const char* symbol;               ///< the paper's, in the report's notation: {..} italic, _{..} subscript
   std::vector<const char*> groups;  ///< parameters that it reads: names in parameter_table() up to their dot
   double (*of)(const LawParameters<double>&, double nu);  ///< value at volume fraction nu [-]
 };
@@ -26,7 +27,7 @@ struct CurvePoint {
   double published = 0;  ///< from the published parameters [-]
 };
 
-/// Every curve at every multiple of `step` within [nu_min, nu_max] (to rounding), curve by curve.
-std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, double nu_min, double nu_max, double step = 0.02);
+/// Every curve at every multiple of 1/`per_unit` within [nu_min, nu_max] (to rounding), curve by curve.
+std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, double nu_min, double nu_max, int per_unit = 50);
 
 }  // namespace grainlaw

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/files/estimate_json.hpp"
 #include "app/one_line.hpp"
+#include "model/density_curves.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
@@ -106,6 +109,20 @@ fit::ShearFit shear_from_json(const Json& object) {
   return shear;
 }
 
+/// Ours beside the published curves; null where the data do not determine ours.
+OrderedJson curves_to_json(const fit::Calibration& calibration) {
+  OrderedJson curves = OrderedJson::array();
+  for (const CurvePoint& point : curve_points(calibration.parameters, calibration.nu_min, calibration.nu_max)) {
+    const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
+                                   [&](const char* group) { return fit::has_values(calibration, group); });
+    curves.push_back({{"quantity", point.curve->quantity},
+                      {"nu", point.nu},
+                      {"ours", known ? number_or_null(point.ours) : OrderedJson()},
+                      {"published", number_or_null(point.published)}});
+  }
+  return curves;
+}
+
 }  // namespace
 
 void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
@@ -124,6 +141,7 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
   for (const fit::Stage& stage : calibration.stages) stages.push_back(stage_to_json(stage));
   OrderedJson& shear = document["shear"] = OrderedJson::array();
   for (const fit::ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
+  document["curves"] = curves_to_json(calibration);
   document["unused_tests"] = calibration.unused_tests;
   document["provenance"] = provenance;
   write_json(file, document);

@@ -127,7 +127,7 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
       add_run(panel, *test, input, what, index_of(seeds, test->packing.seed));
       end = std::max(end, largest_strain(*test));
     }
-    if (has_values(input.calibration, what.groups[0]) && has_values(input.calibration, what.groups[1])) {
+    if (fit::has_values(input.calibration, what.groups[0]) && fit::has_values(input.calibration, what.groups[1])) {
       panel.series.push_back(curve(plain("law, final parameters"), Colour::ink, Line::dotted, 0, end,
                                    [&](double e) { return what.law(input.calibration.parameters, key.nu, e); }));
     }

@@ -113,7 +113,7 @@ Figure shear_law_figure(const ReportInput& input) {
           curve(plain(label), colour, line, from, to, [&](double nu) { return law.value(nu, parameters.shear_nu_c); }));
     };
     add("published", published, Colour::ink, Line::dashed);
-    if (!has_values(calibration, quantity.group)) {
+    if (!fit::has_values(calibration, quantity.group)) {
       panel.title = plain("Eq. 20 not identified by these tests");
       figure.panels.push_back(panel);
       continue;

@@ -119,15 +119,6 @@ fit::Calibration read_fitted_parameters(const fs::path& dir) {
   return with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); }).calibration;
 }
 
-bool has_values(const fit::Calibration& calibration, std::string_view group) {
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const std::string_view name = parameter_table()[i].name;
-    const bool member = name.starts_with(group) && (name.size() == group.size() || name[group.size()] == '.');
-    if (member && calibration.estimates[i].status == fit::Status::not_identified) return false;
-  }
-  return true;
-}
-
 std::vector<TestRecord> dem_records(const PredictionFolder& prediction) {
   std::vector<TestRecord> records;
   if (prediction.dem) {

@@ -35,9 +35,6 @@ ReportInput read_report_input(const std::filesystem::path& dir);
 /// parameters.json alone, as far as the table of parameters goes. Throws likewise.
 fit::Calibration read_fitted_parameters(const std::filesystem::path& dir);
 
-/// True when every parameter `group` or `group.*` of parameter_table() has a value. Curves of others are not drawn.
-bool has_values(const fit::Calibration& calibration, std::string_view group);
-
 /// The DEM runs of a prediction; empty when it was made without --dem.
 std::vector<TestRecord> dem_records(const PredictionFolder& prediction);
 

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <vector>
 
 #include "app/report/table_cells.hpp"
+#include "model/density_curves.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -62,53 +63,22 @@ Table parameter_comparison(const fit::Calibration& calibration) {
   return table;
 }
 
-namespace {
-
-/// A curve of the law over density, and the groups of parameters that it reads.
-struct DensityCurve {
-  const char* symbol;
-  std::vector<const char*> groups;
-  double (*of)(const LawParameters<double>&, double nu);
-};
-
-const std::vector<DensityCurve>& density_curves() {
-  using P = const LawParameters<double>&;
-  static const std::vector<DensityCurve> curves{
-      {"{C}*", {"coordination"}, [](P p, double nu) { return p.isotropic.coordination.C_star(nu); }},
-      {"{φ}_{r}",
-       {"rattlers", "coordination"},
-       [](P p, double nu) { return p.isotropic.rattlers.fraction(nu, p.isotropic.coordination.nu_c); }},
-      {"{P}*", {"pressure", "coordination", "rattlers"}, [](P p, double nu) { return p.isotropic.P_star(nu); }},
-      {"{s}_{max}", {"stress_ratio_max"}, [](P p, double nu) { return p.stress_ratio_max.value(nu, p.shear_nu_c); }},
-      {"{β}_{s}", {"stress_rate"}, [](P p, double nu) { return p.stress_rate.value(nu, p.shear_nu_c); }},
-      {"{F}_{max}", {"fabric_max"}, [](P p, double nu) { return p.fabric_max.value(nu, p.shear_nu_c); }},
-      {"{β}_{F}", {"fabric_rate"}, [](P p, double nu) { return p.fabric_rate.value(nu, p.shear_nu_c); }}};
-  return curves;
-}
-
-}  // namespace
-
 Table curve_comparison(const fit::Calibration& calibration) {
   Table table;
   table.caption = "The law's curves: ours, and the difference from the published curve in brackets";
   table.source = "parameters.json";
   table.columns = {quantity(notation("{ν}"))};
-  for (const DensityCurve& c : density_curves()) table.columns.push_back(quantity(notation(c.symbol)));
-  const LawParameters<double> published = published_parameters();
-  const double step = 0.02, slack = 1e-9;
-  for (double k = std::ceil((calibration.nu_min - slack) / step); k * step <= calibration.nu_max + slack; ++k) {
-    const double nu = k * step;
-    std::vector<Text> row{plain(fixed(nu, 2))};
-    for (const DensityCurve& c : density_curves()) {
-      const bool known = std::all_of(c.groups.begin(), c.groups.end(),
-                                     [&](const char* group) { return has_values(calibration, group); });
-      const double ours = known ? c.of(calibration.parameters, nu) : kUndefined;
-      row.push_back(plain(known
-                              ? significant_padded(ours, 4) + " (" + percent_difference(ours, c.of(published, nu)) + ")"
+  std::map<double, std::vector<Text>> rows;
+  for (const CurvePoint& point : curve_points(calibration.parameters, calibration.nu_min, calibration.nu_max)) {
+    const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
+                                   [&](const char* group) { return fit::has_values(calibration, group); });
+    std::vector<Text>& row = rows[point.nu];
+    if (row.empty()) row.push_back(plain(fixed(point.nu, 2)));
+    row.push_back(plain(known ? significant_padded(point.ours, 4) + " (" + percent_difference(point.ours, point.published) + ")"
                               : "not identified"));
-    }
-    table.rows.push_back(std::move(row));
   }
+  for (const DensityCurve& curve : density_curves()) table.columns.push_back(quantity(notation(curve.symbol)));
+  for (auto& [nu, row] : rows) table.rows.push_back(std::move(row));
   return table;
 }
 
