@@ -73,6 +73,13 @@ OrderedJson end_values(const Observation& row) {
   return values;
 }
 
+/// Cell of end.csv, as TEST's key `cell` takes it.
+OrderedJson cell_to_json(const Eigen::Matrix3d& H) {
+  OrderedJson rows = OrderedJson::array();
+  for (int i = 0; i < 3; ++i) rows.push_back({H(i, 0), H(i, 1), H(i, 2)});
+  return rows;
+}
+
 /// Copies the files of a finished run into the user's folder.
 std::vector<std::string> publish(const RunStore& store, const std::string& key, const Json& record, const fs::path& folder) {
   std::vector<std::string> names;
@@ -97,17 +104,16 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
   std::vector<std::string> files = publish(store, key, record, options.output);
   const Path path = prepared ? path_of({"ISO", "ISO", Branch::unloading, {}, 0, {}, Role::validation}, 0, {test.preparation, {}, {}, {}, {}, {}}) : test.path;
   const auto rows = read_series(options.output / (prepared ? "unloading.csv" : "series.csv"), path, packing_from_record(record));
-  if (!prepared) {
-    dem::write_spheres(options.output / "end.csv", dem::read_state(options.output / "end.state").packing);
-    files.emplace_back("end.csv");
-  }
-
   OrderedJson summary{{"format", "grainlaw simulation"}, {"format_version", 1}, {"run", key}, {"rows", rows.size()}};
   summary["packing"] = OrderedJson(record.at("packing"));
   if (prepared) {
     summary["states"] = OrderedJson(record.at("states"));
   } else {
     summary["path"] = path_to_json(test.path);
+    const dem::Packing end = dem::read_state(options.output / "end.state").packing;
+    dem::write_spheres(options.output / "end.csv", end);
+    files.emplace_back("end.csv");
+    summary["cell"] = cell_to_json(end.H);
   }
   summary["end"] = end_values(rows.back());
   summary["cost"] = OrderedJson(record.at("cost"));

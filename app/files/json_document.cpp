@@ -31,8 +31,7 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     return put(value);
   }
   bool number_unsigned(std::uint64_t value) override { return put(value); }
-  bool number_float(double value, const std::string& text) override {
-    if (!std::isfinite(value)) refuse(fmt::format("{} is beyond the range of numbers; give a finite number", one_line(text, 40)));
+  bool number_float(double value, const std::string&) override {
     if (source_ == JsonSource::user) {
       if (value == 0 && std::signbit(value)) refuse("negative zero is refused; write 0");
       if (value == std::trunc(value) && std::abs(value) < 9.0e18) return put(static_cast<std::int64_t>(value));
@@ -53,7 +52,9 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     return true;
   }
 
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
+  bool parse_error(std::size_t, const std::string& last_token, const nlohmann::detail::exception& error) override {
+    constexpr int kNumberOverflow = 406;
+    if (error.id == kNumberOverflow) refuse(fmt::format("{} is beyond the range of numbers; give a finite number", one_line(last_token, 40)));
     std::string reason = error.what();
     if (const auto end_of_tag = reason.find("] "); end_of_tag != std::string::npos) reason.erase(0, end_of_tag + 2);
     refuse(one_line(reason, 200) + "; the file must be one JSON document in UTF-8");

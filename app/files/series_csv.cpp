@@ -81,7 +81,7 @@ class SeriesReader {
     if (std::isnan(value) && (!may_be_undefined || column.name == "segment")) {
       reader_.refuse(column.title(), "is empty; this column needs a number in every row");
     }
-    if (column.name == "segment" && !(value >= 0 && value < static_cast<double>(path_.segments.size()) && value == std::trunc(value))) {
+    if (column.name == "segment" && !(value >= 0 && value < static_cast<double>(std::max<std::size_t>(1, path_.segments.size())) && value == std::trunc(value))) {
       reader_.refuse(column.title(), fmt::format("{} is no segment of the path, which has {}", value, path_.segments.size()));
     }
     column.set(row, value);

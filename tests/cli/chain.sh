@@ -1,0 +1,56 @@
+# The chain on small packings: calibrate -> again from the store -> from the data set -> predict with new DEM -> report.
+set -euo pipefail
+grainlaw=$1
+fail() { echo "FAIL: $*" >&2; exit 1; }
+
+cat >spec.json <<'JSON'
+{"particles": 200, "seeds": [1, 2], "strain_rate": 3000, "rows": 60, "keep": [0.72], "densities": [0.70, 0.74, 0.78],
+ "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration"}, {"mode": "D2-ISO", "role": "calibration"},
+           {"mode": "UNI", "density": 0.70, "strain": 0.02, "role": "validation"}]}
+JSON
+echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "UNI", "extent": {"target_nu": 0.80}}], "rows": 40}' >path.json
+
+"$grainlaw" calibrate spec.json -o out --threads 2 >first.txt 2>log || fail "calibrate: $(tail -1 log)"
+for file in spec.resolved.json parameters.json calibration.json dataset/dataset.json dataset/ISO-unloading-s1.csv dataset/D2-0.70-s2.csv; do
+  [[ -s out/$file ]] || fail "no $file"
+done
+grep -q 'pressure.p0' first.txt || fail "no table on stdout"
+grep -q $'\x1b' log && fail "escape sequences in a log"
+head -1 out/dataset/D2-0.70-s1.csv | grep -q '^time\[s\],segment,strain_xx,' || fail "header"
+grep -Eiq '(nan|inf)(,|$)' out/dataset/*.csv && fail "a non-finite number in a series"
+
+# finished runs are found, one thread gives the same bits, and the resolved spec is a spec
+"$grainlaw" calibrate out/spec.resolved.json -o out --threads 1 --json >second.json 2>log
+grep -q '"runs_found": 16' second.json || fail "runs were repeated: $(cat second.json)"
+digest() { grep -m1 '"digest"' "$1/dataset/dataset.json"; }
+before=$(digest out)
+"$grainlaw" calibrate spec.json -o single --threads 1 --quiet >/dev/null 2>log
+[[ ! -s log ]] || fail "--quiet is not quiet: $(cat log)"
+[[ $(digest single) == "$before" ]] || fail "results depend on the number of threads"
+
+# without DEM, from the data set alone: the same parameters to the last digit
+"$grainlaw" calibrate --dataset out/dataset -o refit --quiet >/dev/null
+values() { sed '/"provenance"/,$d' "$1"; }
+diff <(values out/parameters.json) <(values refit/parameters.json) || fail "refit differs"
+[[ ! -e refit/runs ]] || fail "refit ran DEM"
+"$grainlaw" calibrate --dataset out -o refit --coupling single --quiet >/dev/null || [[ $? == 3 ]]
+grep -q '"coupling": "single"' refit/parameters.json || fail "coupling"
+
+"$grainlaw" predict out/parameters.json path.json -o out/predictions/uni --dem --json >prediction.json 2>log || fail "predict: $(cat log)"
+cd out/predictions/uni
+for file in prediction.json comparison.json reduced-law.csv evolution-law.csv evolution-law-s3.csv reduced-measured-s4.csv dem/dataset.json dem/UNI-0.72-s3.csv; do
+  [[ -s $file ]] || fail "no $file"
+done
+grep -q '"normalised_rms"' comparison.json && grep -q '"largest_at_nu"' comparison.json || fail comparison
+grep -q '"rhs_evaluations"' prediction.json || fail "solver statistics"
+cd ../../..
+code=0
+"$grainlaw" predict out/parameters.json path.json -o out/predictions/bad --dem --seeds 2,9 2>err || code=$?
+[[ $code == 2 ]] && grep -q 'seeds: 2 was used for the calibration' err && [[ ! -e out/predictions/bad ]] || fail "seeds of the calibration were accepted"
+"$grainlaw" predict out/parameters.json path.json -o alone --model evolution >/dev/null
+[[ -s alone/evolution-law.csv && ! -e alone/reduced-law.csv && ! -e alone/comparison.json ]] || fail "prediction alone"
+
+"$grainlaw" report out -o report.html >table.txt
+[[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report
+find . -name '.*tmp*' | grep -q . && fail "temporary files left"
+exit 0

@@ -1,0 +1,37 @@
+# SIGINT and SIGTERM: exit 130 soon, finished runs stay and are not repeated; a second process waits outside.
+set -euo pipefail
+grainlaw=$1
+fail() { echo "FAIL: $*" >&2; exit 1; }
+set -m  # background jobs keep SIGINT
+
+# a short preparation (finished) and then tests that would take minutes
+cat >spec.json <<'JSON'
+{"particles": 64, "seeds": [1], "strain_rate": 5000, "rows": 20, "densities": [0.78], "nu_end": 0.76,
+ "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "strain": 0.01, "role": "calibration"},
+           {"name": "long", "segments": [{"mode": "D2", "extent": {"eps_dev": 100}}], "role": "validation"}]}
+JSON
+finished() { find out/runs -mindepth 2 -name run.json 2>/dev/null | wc -l; }
+for signal in INT TERM; do
+  "$grainlaw" calibrate spec.json -o out >stdout 2>log &
+  pid=$!
+  for ((i = 0; i < 600; ++i)); do
+    (( $(finished) >= 2 )) && [[ $(readlink /proc/$pid/fd/* 2>/dev/null) == */out/runs/.lock* ]] && break
+    kill -0 $pid 2>/dev/null || fail "ended by itself: $(cat log)"
+    sleep 0.1
+  done
+  sleep 0.3  # from opening the lock to holding it
+  code=0
+  "$grainlaw" calibrate spec.json -o out >/dev/null 2>other || code=$?
+  [[ $code == 1 ]] && grep -q 'another grainlaw works in this folder' other || fail "two processes in one store: $code $(cat other)"
+  kill -$signal $pid
+  code=0
+  wait $pid || code=$?
+  [[ $code == 130 ]] || fail "SIG$signal: exit code $code: $(cat log)"
+  tail -1 log | grep -q 'grainlaw: interrupted' || fail "no word of it: $(tail -1 log)"
+  (( $(finished) == 2 )) || fail "$(finished) finished runs, not 2"
+  [[ ! -e out/parameters.json && ! -e out/dataset/dataset.json ]] || fail "results of an unfinished calibration"
+done
+before=$(find out/runs -name run.json -printf '%p %T@\n' | sort)
+sed -i 's/"eps_dev": 100/"eps_dev": 0.01/' spec.json
+"$grainlaw" calibrate spec.json -o out >/dev/null 2>log || [[ $? == 2 || $? == 3 ]]  # 64 spheres at one density make no law
+[[ $(find out/runs -name run.json -printf '%p %T@\n' | sort | comm -12 - <(echo "$before")) == "$before" ]] || fail "finished runs were repeated"

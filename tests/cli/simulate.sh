@@ -1,0 +1,30 @@
+# grainlaw simulate: a preparation, a path from it, a table of spheres, a state file.
+set -euo pipefail
+grainlaw=$1
+fail() { echo "FAIL: $*" >&2; exit 1; }
+small='"particles": 64, "seed": 3, "strain_rate": 5000, "rows": 20, "nu_end": 0.72'
+
+echo "{$small, \"keep\": [{\"nu\": 0.74}, {\"nu\": 0.75, \"branch\": \"loading\"}]}" >packing.json
+"$grainlaw" simulate packing.json -o packing >text 2>log || fail "$(cat log)"
+for file in loading.csv unloading.csv unloading-0.74.state loading-0.75.state simulation.json; do [[ -s packing/$file ]] || fail "no $file"; done
+grep -q '64 spheres, 21 rows, end of the unloading branch' text || fail "$(cat text)"
+
+echo "{$small, \"initial\": {\"nu\": 0.74}, \"segments\": [{\"mode\": \"D2\", \"extent\": {\"eps_dev\": 0.02}}, {\"mode\": \"ISO\", \"extent\": {\"target_nu\": 0.75}}]}" >path.json
+"$grainlaw" simulate path.json -o path --json >result.json 2>log || fail "$(cat log)"
+for file in series.csv end.state end.csv simulation.json; do [[ -s path/$file ]] || fail "no $file"; done
+(( $(wc -l <path/series.csv) == 42 )) || fail "rows"
+cmp result.json path/simulation.json || fail "--json is not the summary on disk"
+
+# on from the state where the path ended, and from its table of spheres in the same cell
+echo '{"state": "path/end.state", "strain_rate": 5000, "rows": 5, "segments": [{"mode": "UNI", "extent": {"eps_dev": 0.002}}]}' >on.json
+"$grainlaw" simulate on.json -o on --quiet >text
+grep -q 'nu  *0.7515' text || fail "UNI from 0.75 by 0.002 ends at 0.75 exp(0.002): $(cat text)"
+cell=$(tr -d '\n ' <path/simulation.json | grep -o '"cell":\[\[[^]]*\],\[[^]]*\],\[[^]]*\]\]')
+cp path/end.csv spheres.csv
+echo "{\"spheres\": \"spheres.csv\", $cell, \"rows\": 5}" >spheres.json
+"$grainlaw" simulate spheres.json -o spheres --json --quiet >result.json
+pressure() { grep -m1 '"P_star"' "$1" | tr -d ' ,' | cut -d: -f2; }
+awk -v a="$(pressure path/simulation.json)" -v b="$(pressure result.json)" 'BEGIN { exit !(a > 0 && (a - b)^2 <= 1e-18 * a^2) }' \
+  || fail "P* of the table $(pressure result.json), of the state $(pressure path/simulation.json)"
+"$grainlaw" simulate spheres.json -o spheres --json --quiet >again.json
+cmp <(grep '"run"' result.json) <(grep '"run"' again.json) || fail "another run"
