@@ -117,7 +117,8 @@ Page make_page(const ReportInput& input) {
         paragraph_html(
             plain("Parameters of Eqs. 11, 12 and 14 depend on each other: equal curves come from quite different "
                   "values. The curves are what should be compared.")),
-        table_html(curve_comparison(calibration))}});
+        table_html(curve_comparison(calibration, CurveGroup::law)) +
+            table_html(curve_comparison(calibration, CurveGroup::steady_state))}});
   page.sections.push_back({"state",
                            "Pressure, coordination and rattlers",
                            {figure_html(density_figure(input)), figure_html(scaled_density_figure(input))}});

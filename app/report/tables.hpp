@@ -11,7 +11,8 @@ namespace grainlaw::app::report {
 /// Every parameter: meaning, symbol, equation, ours +- one standard error, published, relative difference.
 Table parameter_comparison(const fit::Calibration& calibration);
 /// What the parameters mean: C*, phi_r, P*, s_max, beta_s, F_max, beta_F at round densities of the calibrated range.
-Table curve_comparison(const fit::Calibration& calibration);
+enum class CurveGroup { law, steady_state };
+Table curve_comparison(const fit::Calibration& calibration, CurveGroup which);
 /// Stages of the fit: window, sizes, costs, termination.
 Table stage_table(const fit::Calibration& calibration);
 /// Misfit of the coupled fit per test and quantity.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "app/report/table_cells.hpp"
@@ -63,13 +64,18 @@ Table parameter_comparison(const fit::Calibration& calibration) {
   return table;
 }
 
-Table curve_comparison(const fit::Calibration& calibration) {
+Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
+  const auto shown = [&](const DensityCurve& curve) {
+    return std::string_view(curve.quantity).starts_with("steady_") == (which == CurveGroup::steady_state);
+  };
   Table table;
-  table.caption = "The law's curves: ours, and the difference from the published curve in brackets";
+  table.caption = which == CurveGroup::law ? "The law's curves: ours, and the difference from the published curve in brackets"
+                                           : "Steady state of shear (not read by the law), likewise";
   table.source = "parameters.json";
   table.columns = {quantity(notation("{ν}"))};
   std::map<double, std::vector<Text>> rows;
   for (const CurvePoint& point : curve_points(calibration.parameters, calibration.nu_min, calibration.nu_max)) {
+    if (!shown(*point.curve)) continue;
     const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
                                    [&](const char* group) { return fit::has_values(calibration, group); });
     std::vector<Text>& row = rows[point.nu];
@@ -77,7 +83,9 @@ Table curve_comparison(const fit::Calibration& calibration) {
     row.push_back(plain(known ? significant_padded(point.ours, 4) + " (" + percent_difference(point.ours, point.published) + ")"
                               : "not identified"));
   }
-  for (const DensityCurve& curve : density_curves()) table.columns.push_back(quantity(notation(curve.symbol)));
+  for (const DensityCurve& curve : density_curves()) {
+    if (shown(curve)) table.columns.push_back(quantity(notation(curve.symbol)));
+  }
   for (auto& [nu, row] : rows) table.rows.push_back(std::move(row));
   return table;
 }
