@@ -8,7 +8,8 @@ std::string to_string(Coupling coupling) { return coupling == Coupling::energy ?
 
 const std::array<ParameterInfo, kParameterCount>& parameter_table() {
   constexpr auto none = std::nullopt;
-  // Starting values are round numbers of the right order, deliberately off the published ones.
+  // Starting values are round numbers of the right order, deliberately off the published ones. alpha of Eq. (20) stays
+  // above zero, where Q_limit and Q_c would be one number.
   // clang-format off
   static const std::array<ParameterInfo, kParameterCount> table{{
       {"coordination.C1", "C_1", "11", "corrected coordination number, ISO unloading: prefactor", 0.1, 50, 7, 8.2720},
@@ -32,16 +33,16 @@ const std::array<ParameterInfo, kParameterCount>& parameter_table() {
       {"shear.nu_c", "nu_c", "20", "jamming volume fraction of Eq. (20), fixed", 0.5, 0.74, 0.6653, 0.6653},
       {"stress_ratio_max.Q_limit", "s_max: Q_max", "20", "steady stress ratio at large density", 0, 1, 0.1, 0.1137},
       {"stress_ratio_max.Q_c", "s_max: Q_c", "20", "steady stress ratio: excess at jamming", 0, 2, 0.1, 0.09166},
-      {"stress_ratio_max.alpha", "s_max: alpha", "20", "steady stress ratio: decay with density", 0, 100, 10, 7.916},
+      {"stress_ratio_max.alpha", "s_max: alpha", "20", "steady stress ratio: decay with density", 0.1, 100, 10, 7.916},
       {"stress_rate.Q_limit", "beta_s: Q_max", "20", "growth rate of the stress ratio at large density", 0, 500, 30, 30.76},
       {"stress_rate.Q_c", "beta_s: Q_c", "20", "growth rate of the stress ratio: excess at jamming", 0, 1000, 50, 57.0},
-      {"stress_rate.alpha", "beta_s: alpha", "20", "growth rate of the stress ratio: decay with density", 0, 200, 10, 16.86},
+      {"stress_rate.alpha", "beta_s: alpha", "20", "growth rate of the stress ratio: decay with density", 0.1, 200, 10, 16.86},
       {"fabric_max.Q_limit", "F_max: Q_max", "20", "steady deviatoric fabric at large density", 0, 1, 0, 0.0},
       {"fabric_max.Q_c", "F_max: Q_c", "20", "steady deviatoric fabric: excess at jamming", 0, 2, 0.1, 0.1694},
-      {"fabric_max.alpha", "F_max: alpha", "20", "steady deviatoric fabric: decay with density", 0, 100, 5, 4.562},
+      {"fabric_max.alpha", "F_max: alpha", "20", "steady deviatoric fabric: decay with density", 0.1, 100, 5, 4.562},
       {"fabric_rate.Q_limit", "beta_F: Q_max", "20", "growth rate of the fabric at large density", 0, 500, 0, 0.0},
       {"fabric_rate.Q_c", "beta_F: Q_c", "20", "growth rate of the fabric: excess at jamming", 0, 1000, 50, 57.89},
-      {"fabric_rate.alpha", "beta_F: alpha", "20", "growth rate of the fabric: decay with density", 0, 100, 5, 5.366},
+      {"fabric_rate.alpha", "beta_F: alpha", "20", "growth rate of the fabric: decay with density", 0.1, 100, 5, 5.366},
       {"anisotropy.a0", "a_0", "19", "A* = a0 F_dev of the printed single coupling", 0, 10, 0.3, 0.137},
       {"anisotropy.a1", "a_1", "16", "A1/(B F_dev), pressure row", -10, 10, 0.7, none},
       {"anisotropy.a2", "a_2", "16", "A2/(B F_dev), deviatoric stress row", -10, 10, 1, none},
