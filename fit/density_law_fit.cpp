@@ -80,6 +80,15 @@ DensityLawProblem density_law_problem(const std::string& name, const std::vector
   return problem;
 }
 
+void settle_constant_law(StageFit& fit, const std::string& law) {
+  std::vector<NamedEstimate>& all = fit.stage.estimates;
+  const auto at = std::find_if(all.begin(), all.end(), [&](const NamedEstimate& e) { return e.name == law + ".Q_c"; });
+  if (at == all.end() || at->estimate.status != Status::at_bound || at->estimate.value != 0) return;
+  Estimate& alpha = (at + 1)->estimate;
+  alpha.status = Status::fixed;
+  alpha.note = "without effect while Q_c is 0";
+}
+
 StageFit fit_density_law(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
                          const std::vector<int>& cluster, LawParameters<double>& law, const CalibrationOptions& options,
                          const RunControl& control) {
@@ -107,6 +116,7 @@ StageFit fit_density_law(const ShearQuantity& quantity, const std::vector<ShearF
   StageFit fit = fit_stage(name, fmt::format("values of the stage shear, relative, nu_c = {:g} fixed", law.shear_nu_c),
                            problem.parameters, problem.blocks, remedy, options.threads, control);
   law.*quantity.law = {fit.solution.x(0), fit.solution.x(1), fit.solution.x(2)};
+  settle_constant_law(fit, name);
   if (found < kDensitiesNeeded) {
     for (const FreeParameter& p : problem.parameters) fit.mark_not_identified(p.name, remedy);
   }

@@ -25,6 +25,9 @@ DensityLawProblem density_law_problem(const std::string& name, const std::vector
                                       const std::vector<int>& cluster, const std::vector<Eigen::Vector2d>& values,
                                       double nu_c);
 
+/// A law without decaying part (Q_c on its bound 0) is a constant: alpha then is fixed, without effect, and not unknown.
+void settle_constant_law(StageFit& fit, const std::string& law);
+
 /// Stage of the quantity's name over the tests in which it is fitted; the result goes to `law` as well. With fewer than
 /// three densities its parameters are not identified (the curve still meets the values there are).
 StageFit fit_density_law(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,

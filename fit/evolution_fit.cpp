@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "fit/density_law_fit.hpp"
 #include "fit/density_series.hpp"
 #include "fit/shear_fit.hpp"
 
@@ -146,6 +147,7 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
     for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
       *field[parameter_index(problem.parameters[k].name)] = fit.solution.x(static_cast<Eigen::Index>(k));
     }
+    for (const ShearQuantity& quantity : kShearQuantities) settle_constant_law(fit, quantity.name);
     for (const Pair& pair : kPairs) judge_pair(fit, trajectories, law, pair, options);
     if (anisotropy) judge_coupling(fit, coupling, remedy);
   }

@@ -147,9 +147,7 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
       if (errors.has_error[k]) {
         estimate.standard_error = std::sqrt(errors.covariance(i, i));
       } else {
-        estimate.note = errors.effective_runs(i) > kLeastEffectiveRuns
-                            ? "no degree of freedom left for an error; add runs"
-                            : "rests on one run, hence no error; add seeds";
+        estimate.note = "rests on a single run, hence no error; add seeds";
       }
     }
   }

@@ -110,7 +110,7 @@ TEST(Calibrate, OneSeedOneDensityRunsAndClaimsNothingItCannotKnow) {
   for (const char* name : {"pressure.p0", "coordination.C1"}) {
     EXPECT_EQ(estimate(c, name).status, Status::fitted);
     EXPECT_TRUE(std::isnan(estimate(c, name).standard_error));
-    EXPECT_NE(estimate(c, name).note.find("one run"), std::string::npos);
+    EXPECT_NE(estimate(c, name).note.find("single run"), std::string::npos);
   }
   for (const char* name : {"stress_ratio_max.Q_c", "stress_rate.alpha", "fabric_max.Q_limit", "fabric_rate.Q_c",
                            "steady_pressure.nu_c", "steady_coordination.C1"}) {

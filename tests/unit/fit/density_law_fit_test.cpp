@@ -84,6 +84,28 @@ TEST(DensityLawFit, FewerDensitiesMeetTheirValuesButIdentifyNothing) {
   }
 }
 
+TEST(DensityLawFit, AConstantIsALawOfItsOwn) {
+  std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78}, 2);
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    fits[i].s_max.value = 0.15 + 0.001 * fits[i].nu;  // grows: decays nowhere
+  LawParameters<double> law = start_parameters();
+  const StageFit fit = fit_density_law(kShearQuantities[0], fits, own_clusters(fits), law, {}, {});
+  EXPECT_TRUE(fit.stage.converged) << fit.stage.termination;
+  EXPECT_EQ(fit.stage.estimates[0].estimate.status, Status::fitted);
+  EXPECT_EQ(fit.stage.estimates[1].estimate.status, Status::at_bound);
+  EXPECT_EQ(fit.stage.estimates[2].estimate.status, Status::fixed) << fit.stage.estimates[2].estimate.note;
+  EXPECT_NEAR(law.stress_ratio_max.Q_limit, 0.1507, 1e-4);
+}
+
+TEST(DensityLawFit, ARateWithoutTrendKeepsItsCurve) {
+  std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78}, 2);
+  for (std::size_t i = 0; i < fits.size(); ++i) fits[i].beta_s.value = 45 - 10 * fits[i].nu + (i % 2 == 0 ? 1 : -1);
+  LawParameters<double> law = start_parameters();
+  const StageFit fit = fit_density_law(kShearQuantities[1], fits, own_clusters(fits), law, {}, {});
+  for (const NamedEstimate& e : fit.stage.estimates) EXPECT_NE(e.estimate.status, Status::not_identified) << e.name;
+  EXPECT_NEAR(law.stress_rate.value(0.72, law.shear_nu_c), 45 - 7.2, 0.1);
+}
+
 TEST(DensityLawFit, TestsThatShowedNothingAreLeftOut) {
   std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78}, 1);
   fits[0].s_max = {1e9, std::nan(""), Status::not_identified, "short"};
