@@ -7,7 +7,7 @@
 //   F   fabric
 // The deviators along the directions of the test's own segments (s_par, F_par; one component on co-axial paths): what
 // stands across them is the noise of a finite packing, and no parameter moves it.
-// Each test, quantity and window counts the same (shear_window.hpp), in units of the scales in CalibrationOptions.
+// Weights: shear_window.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
 
 #include "fit/stage_fit.hpp"
 #include "fit/trajectory.hpp"

@@ -17,6 +17,7 @@ void check(const CalibrationOptions& options) {
   positive(options.iso_nu_min, "iso_nu_min");
   positive(options.rate_window, "rate_window");
   positive(options.steady_from, "steady_from");
+  positive(options.steady_weight, "steady_weight");
   positive(options.max_step, "max_step");
   positive(options.pressure_scale, "pressure_scale");
   positive(options.stress_scale, "stress_scale");

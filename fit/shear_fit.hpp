@@ -2,8 +2,7 @@
 // Eqs. (17) and (18) on one test of shear at constant volume:
 //   s(e) = s_max - (s_max - s_0) exp(-beta_s e),   F(e) = F_max - (F_max - F_0) exp(-beta_F e)
 // s = <sigma',N>/P and F = <F',N> signed along the shear (norms are biased upwards in a finite packing), e the deviatoric
-// strain, s_0 and F_0 measured in the first row. Both windows of shear_window.hpp enter: s_max and F_max then are the
-// steady means as Table 3 has them, where a fit of the first 0.12 alone would take the peak for the limit.
+// strain, s_0 and F_0 measured in the first row. Windows and weights: shear_window.hpp.
 
 #include "fit/data_set.hpp"
 #include "fit/stage_fit.hpp"

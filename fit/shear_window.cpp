@@ -22,7 +22,7 @@ RowWeights shear_window(const std::vector<double>& eps_dev, const CalibrationOpt
   for (std::size_t i = 0; i < eps_dev.size(); ++i) {
     if (!in_rate(eps_dev[i]) && !in_steady(eps_dev[i])) continue;
     rows.row.push_back(i);
-    rows.weight.push_back(weight_of(in_rate(eps_dev[i]) ? rate : steady));
+    rows.weight.push_back(in_rate(eps_dev[i]) ? weight_of(rate) : options.steady_weight * weight_of(steady));
   }
   return rows;
 }

@@ -56,6 +56,19 @@ TEST(ShearFit, RecoversEqs17And18WithTheirMeasuredStart) {
   EXPECT_EQ(stage.tests.size(), 2u);
 }
 
+TEST(ShearFit, LimitIsTheSteadyMeanWhereThereIsAPeak) {
+  // Overshoot of 10 % up to eps_dev = .13, steady afterwards.
+  TestRecord test = exact_shear(0.70, 0.17, 50, 0.13, 40, 0.3, 0, 0);
+  for (Observation& row : test.rows) {
+    if (deviatoric_norm(row.strain.tensor) > 0.13) continue;
+    row.stress.tensor = 1.1 * row.stress.tensor - 0.1 * row.stress.tensor.trace() / 3 * Eigen::Matrix3d::Identity();
+  }
+  Stage stage;
+  const ShearFit fit = fit_shear(test, 0.6649, {}, {}, stage);
+  EXPECT_NEAR(fit.s_max.value, fit.s_steady, 0.01 * fit.s_steady);
+  EXPECT_GT(fit.beta_s.value, 50);  // the peak is taken for a faster rise
+}
+
 TEST(ShearFit, AShortPathShowsASlopeOnly) {
   Stage stage;
   const double beta = 20;

@@ -21,12 +21,12 @@ double weight_in(const RowWeights& rows, const std::vector<double>& e, double fr
   return sum;
 }
 
-TEST(ShearWindow, BothWindowsWeighOneWhateverTheLengthOfTheTest) {
+TEST(ShearWindow, WeightOfAWindowDoesNotDependOnTheLengthOfTheTest) {
   for (const double to : {0.3, 1.0}) {
     const std::vector<double> e = strains(to, 400);
-    const RowWeights rows = shear_window(e, {});
+    const RowWeights rows = shear_window(e, {});  // steady_weight 3, squared in the cost
     EXPECT_NEAR(weight_in(rows, e, 0, 0.1201), 1, 1e-12) << to;
-    EXPECT_NEAR(weight_in(rows, e, 0.1499, to), 1, 1e-12) << to;
+    EXPECT_NEAR(weight_in(rows, e, 0.1499, to), 9, 1e-12) << to;
     EXPECT_EQ(weight_in(rows, e, 0.1201, 0.1499), 0) << to;
   }
 }
@@ -40,7 +40,7 @@ TEST(ShearWindow, StartIsNoDatumAndTheWindowsHaveTheirEnds) {
 TEST(ShearWindow, FewRowsDoNotWeighLikeAFullWindow) {
   const RowWeights rows = shear_window({0, 0.05, 0.2}, {});
   ASSERT_EQ(rows.weight.size(), 2u);
-  EXPECT_NEAR(rows.weight[1] * rows.weight[1], 1.0 / kFullWindow, 1e-15);
+  EXPECT_NEAR(rows.weight[0] * rows.weight[0], 1.0 / kFullWindow, 1e-15);
 }
 
 TEST(ShearWindow, WholeWindowTakesAllButTheStart) {
