@@ -42,6 +42,19 @@ Factor factor_of(const Eigen::MatrixXd& J) {
   return factor;
 }
 
+constexpr Eigen::Index kPieces = 10;  // of a run: longer than the correlation of its rows, short enough to be many
+
+/// sum of g g^T over the pieces of a run, g = J^T r of a piece; the run is cut in the order of its rows.
+Eigen::MatrixXd products_of_pieces(const Eigen::MatrixXd& J, const Eigen::VectorXd& misfit) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(J.cols(), J.cols());
+  for (Eigen::Index k = 0; k < kPieces; ++k) {
+    const Eigen::Index begin = k * J.rows() / kPieces, n = (k + 1) * J.rows() / kPieces - begin;
+    const Eigen::VectorXd g = J.middleRows(begin, n).transpose() * misfit.segment(begin, n);
+    sum += g * g.transpose();
+  }
+  return sum;
+}
+
 }  // namespace
 
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
@@ -65,6 +78,7 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
   std::map<int, std::vector<Eigen::Index>> rows_of;
   for (std::size_t i = 0; i < cluster.size(); ++i) rows_of[cluster[i]].push_back(static_cast<Eigen::Index>(i));
   Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(L.cols(), L.cols());  // in the coordinates of L
+  Eigen::MatrixXd meat_of_pieces = meat;
   Eigen::VectorXd carried_by_one = Eigen::VectorXd::Zero(p);
   for (const auto& [id, rows] : rows_of) {
     const Eigen::MatrixXd J_L = J(rows, Eigen::all) * L;
@@ -79,7 +93,11 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
     }
     const Eigen::VectorXd g = W * power.cwiseProduct(W.transpose() * (J_L.transpose() * misfit(rows)));
     meat += g * g.transpose();
+    meat_of_pieces += products_of_pieces(J_L, misfit(rows));
   }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> excess(meat_of_pieces - meat);
+  const Eigen::MatrixXd& U = excess.eigenvectors();
+  meat += U * excess.eigenvalues().cwiseMax(0).asDiagonal() * U.transpose();
   const Eigen::MatrixXd V = L * meat * L.transpose();
   for (Eigen::Index k = 0; k < p; ++k) {
     const auto whole = static_cast<std::size_t>(columns[static_cast<std::size_t>(k)]);

@@ -5,6 +5,9 @@
 // The power of the leverage undoes what a run's own share in the fit takes from its residual ("CR2"). For G runs that
 // share alike it is the factor G/(G-1); where a parameter rests on few of many runs (two ISO branches among twenty shear
 // tests, for the pressure's nu_c) it is the factor of those few, and correlations stay what they are.
+// With few runs the sum has few terms and can vanish in a direction by chance (two runs and three parameters: it must).
+// So the plain sum is also made with each run cut into ten pieces in the order of its rows: correlation within a piece
+// counts, that between pieces does not. Directions in which that is larger get what is missing.
 // Source: Bell & McCaffrey, Survey Methodology 28 (2002) 169; the sandwich is Liang & Zeger, Biometrika 73 (1986) 13.
 //
 // Identifiability: singular values of J with columns scaled to one. A column that is zero, or takes part in a null
