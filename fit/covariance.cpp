@@ -74,6 +74,10 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
   const Factor factor = factor_of(J);
   const Eigen::MatrixXd& L = factor.L;
   result.condition = factor.condition;
+  if (L.cols() == 0) {  // nothing that was measured moves with any parameter
+    for (const Eigen::Index k : columns) result.identified[static_cast<std::size_t>(k)] = false;
+    return result;
+  }
 
   std::map<int, std::vector<Eigen::Index>> rows_of;
   for (std::size_t i = 0; i < cluster.size(); ++i) rows_of[cluster[i]].push_back(static_cast<Eigen::Index>(i));

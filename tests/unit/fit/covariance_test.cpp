@@ -147,5 +147,13 @@ TEST(Covariance, NoErrorWithoutADegreeOfFreedom) {
   EXPECT_FALSE(c.has_error[0] || c.has_error[1]);
 }
 
+TEST(Covariance, DataThatMoveWithNothingDetermineNothing) {
+  const ClusterCovariance c =
+      cluster_covariance(Eigen::MatrixXd::Zero(3, 2), Eigen::VectorXd::Ones(3), {0, 1, 1}, {true, true});
+  EXPECT_EQ(c.identified, (std::vector<bool>{false, false}));
+  EXPECT_EQ(c.has_error, (std::vector<bool>{false, false}));
+  EXPECT_EQ(c.covariance.norm(), 0);
+}
+
 }  // namespace
 }  // namespace grainlaw::fit
