@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& final_name)
-      : final_(final_name), name_(final_name.parent_path() / fmt::format(".{}.tmp-{}", final_name.filename().string(), getpid())) {
+      : final_(final_name),
+        name_(final_name.parent_path() / fmt::format(".{}.tmp-{}", final_name.filename().string(), getpid())) {
     // O_EXCL and O_NOFOLLOW: never write through a link that somebody placed there.
     unlink(name_.c_str());
     descriptor_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);

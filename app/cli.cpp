@@ -52,13 +52,15 @@ void add_simulate(CLI::App& app, Common& common, Task& task) {
 }
 
 void add_calibrate(CLI::App& app, Common& common, Task& task) {
-  CLI::App* command = app.add_subcommand("calibrate", "packings and element tests of a spec, then the law's parameters");
+  CLI::App* command =
+      app.add_subcommand("calibrate", "packings and element tests of a spec, then the law's parameters");
   auto options = std::make_shared<CalibrateOptions>();
   command->add_option("SPEC", options->spec, "SPEC.json; may be left out with --dataset");
   command->add_option("-o,--output", options->output, "folder of the calibration")->required();
   command->add_option("--dataset", options->dataset, "fit this data set without running DEM");
   command->add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Coupling>{{"energy", Coupling::energy}, {"single", Coupling::single}}));
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Coupling>{{"energy", Coupling::energy}, {"single", Coupling::single}}));
   add_common(*command, common);
   command->callback([options, &task] { task = [options](Session& session) { return calibrate(*options, session); }; });
 }
@@ -71,14 +73,20 @@ void add_predict(CLI::App& app, Common& common, Task& task) {
   command->add_option("-o,--output", options->output, "folder of the prediction")->required();
   command->add_flag("--dem", options->dem, "run the path in the engine on new packings and compare");
   command->add_option("--model", options->model, "reduced or evolution; default: both")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, predict::Model>{{"reduced", predict::Model::reduced}, {"evolution", predict::Model::evolution}}));
-  command->add_option("--initial", options->initial, "start from the law or from measured values; default: law, with --dem both")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Initial>{{"law", Initial::law}, {"measured", Initial::measured}}));
+      ->transform(CLI::CheckedTransformer(std::map<std::string, predict::Model>{
+          {"reduced", predict::Model::reduced}, {"evolution", predict::Model::evolution}}));
+  command
+      ->add_option("--initial", options->initial,
+                   "start from the law or from measured values; default: law, with --dem both")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Initial>{{"law", Initial::law}, {"measured", Initial::measured}}));
   command->add_option("--seeds", options->seeds, "seeds of the new packings, e.g. 11,12")->delimiter(',');
-  command->add_option("--spec", options->spec, "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
+  command->add_option("--spec", options->spec,
+                      "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
   command->add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS");
   add_common(*command, common);
-  command->callback([options, &task] { task = [options](Session& session) { return run_prediction(*options, session); }; });
+  command->callback(
+      [options, &task] { task = [options](Session& session) { return run_prediction(*options, session); }; });
 }
 
 void add_report(CLI::App& app, Common& common, Task& task) {
@@ -90,7 +98,8 @@ void add_report(CLI::App& app, Common& common, Task& task) {
   command->callback([folder, html, &task] {
     task = [folder, html](Session& session) {
       write_report(*folder, *html);
-      print_result(session.json ? json_text({{"report", html->string()}}) : fmt::format("{}\n{}\n", summary_table(*folder), html->string()));
+      print_result(session.json ? json_text({{"report", html->string()}})
+                                : fmt::format("{}\n{}\n", summary_table(*folder), html->string()));
       return ExitCode::ok;
     };
   });

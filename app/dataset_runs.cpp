@@ -21,8 +21,10 @@ namespace fs = std::filesystem;
 
 std::string preparation_key(const PlannedTest& test) { return run_key(preparation_request(test.preparation)); }
 
+TestStart start_of(const PlannedTest& test) { return {test.preparation, test.rows, {}, "", false}; }
+
 std::string test_key(const PlannedTest& test) {
-  return test.branch_of_preparation ? preparation_key(test) : run_key(test_request({test.preparation, {}, "", false}, test.path));
+  return test.branch_of_preparation ? preparation_key(test) : run_key(test_request(start_of(test), test.path));
 }
 
 double particles(const PlannedTest& test) { return static_cast<double>(test.preparation.packing.particles); }
@@ -54,9 +56,9 @@ std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore&
   for (const PlannedTest& test : tests) {
     const std::string key = test_key(test);
     if (index.contains(key)) continue;
-    add(key, {test.name, particles(test) * expected_steps(test.preparation, resolve(test.path)), index.at(preparation_key(test)),
-              [&store, &test](int threads, const RunControl& control) {
-                TestStart start{test.preparation, {}, "", false};
+    add(key, {test.name, particles(test) * expected_steps(test.preparation, resolve(test.path)),
+              index.at(preparation_key(test)), [&store, &test](int threads, const RunControl& control) {
+                TestStart start = start_of(test);
                 start.preparation.engine.threads = threads;
                 ensure_test(store, start, test.path, control);
               }});
@@ -85,18 +87,20 @@ std::vector<PlannedTest> plan(const Spec& spec) {
     preparation.packing.seed = seed;
     for (const TestRequest& request : spec.tests) {
       if (request.mode == "ISO") {
-        tests.push_back({record_name(request, 0, seed), request.role, path_of(request, 0, spec), preparation, true});
+        tests.push_back({record_name(request, 0, seed), request.role, path_of(request, 0, spec), preparation,
+                         preparation.rows, true});
       }
       for (const double nu : request.densities) {
-        tests.push_back({record_name(request, nu, seed), request.role, path_of(request, nu, spec), preparation, false});
+        tests.push_back({record_name(request, nu, seed), request.role, path_of(request, nu, spec), preparation,
+                         preparation.rows, false});
       }
     }
   }
   return tests;
 }
 
-Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder, const RunStore& store,
-                    Session& session, RunCounts& counts) {
+Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
+                    const RunStore& store, Session& session, RunCounts& counts) {
   run_jobs(jobs_for(tests, store, counts), session.threads, session.progress, session.stop);
 
   std::set<std::string> stale = series_listed(folder);
@@ -115,7 +119,8 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
     test.record.rows = read_series(file, planned.path, test.record.packing);
     stale.erase(planned.name);
     const std::uint64_t seed = planned.preparation.packing.seed;
-    if (std::find(dataset.seeds.begin(), dataset.seeds.end(), seed) == dataset.seeds.end()) dataset.seeds.push_back(seed);
+    if (std::find(dataset.seeds.begin(), dataset.seeds.end(), seed) == dataset.seeds.end())
+      dataset.seeds.push_back(seed);
     dataset.tests.push_back(std::move(test));
   }
   dataset.provenance = Json(provenance(session.command, session.threads, session.stopwatch));

@@ -13,11 +13,12 @@ namespace grainlaw::app {
 
 /// One test on one packing.
 struct PlannedTest {
-  std::string name;                      ///< of the record
+  std::string name;  ///< of the record
   Role role = Role::calibration;
   Path path;
-  dem::PreparationOptions preparation;   ///< of its packing
-  bool branch_of_preparation = false;    ///< ISO: the series that the preparation itself leaves
+  dem::PreparationOptions preparation;  ///< of its packing
+  int rows = 200;                       ///< of each segment
+  bool branch_of_preparation = false;   ///< ISO: the series that the preparation itself leaves
 };
 
 /// All tests of the spec on all seeds, in the order of the spec within each seed.

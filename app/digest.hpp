@@ -7,7 +7,7 @@
 
 namespace grainlaw::app {
 
-std::string sha256(std::string_view bytes);                        ///< 64 lower-case hexadecimal digits
-std::string sha256_of_file(const std::filesystem::path& file);     ///< likewise; throws Error naming the file
+std::string sha256(std::string_view bytes);                     ///< 64 lower-case hexadecimal digits
+std::string sha256_of_file(const std::filesystem::path& file);  ///< likewise; throws Error naming the file
 
 }  // namespace grainlaw::app

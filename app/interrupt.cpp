@@ -31,7 +31,8 @@ extern "C" void on_signal(int) {
 struct InterruptGuard::Watch {
   std::stop_source source;
   int ends[2]{-1, -1};
-  struct sigaction earlier_int {}, earlier_term {};
+  struct sigaction earlier_int {
+  }, earlier_term{};
   std::jthread thread;
 };
 

@@ -17,7 +17,11 @@ enum class Phase { waiting, running, done };
 class Schedule {
  public:
   Schedule(const std::vector<Job>& jobs, int threads, ProgressPrinter& progress, const std::stop_token& stop)
-      : jobs_(jobs), progress_(progress), phase_(jobs.size(), Phase::waiting), errors_(jobs.size()), free_(threads),
+      : jobs_(jobs),
+        progress_(progress),
+        phase_(jobs.size(), Phase::waiting),
+        errors_(jobs.size()),
+        free_(threads),
         forward_stop_(stop, [this] {
           all_.request_stop();
           const std::lock_guard lock(mutex_);  // not between a waiter's look and its sleep

@@ -14,9 +14,9 @@
 namespace grainlaw::app {
 
 struct Job {
-  std::string name;                   ///< for progress and messages
-  double work = 0;                    ///< expected amount, 0 when there is nothing to do [particle-steps]
-  std::optional<std::size_t> after;   ///< index of an earlier job that must be finished first
+  std::string name;                  ///< for progress and messages
+  double work = 0;                   ///< expected amount, 0 when there is nothing to do [particle-steps]
+  std::optional<std::size_t> after;  ///< index of an earlier job that must be finished first
   std::function<void(int threads, const RunControl& control)> run;
 };
 

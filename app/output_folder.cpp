@@ -11,9 +11,12 @@ namespace grainlaw::app {
 namespace fs = std::filesystem;
 
 bool is_safe_name(std::string_view name) {
-  const auto alphanumeric = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  const auto alphanumeric = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
   return !name.empty() && name.size() <= 100 && alphanumeric(name.front()) &&
-         std::all_of(name.begin(), name.end(), [&](char c) { return alphanumeric(c) || c == '.' || c == '-' || c == '_'; });
+         std::all_of(name.begin(), name.end(),
+                     [&](char c) { return alphanumeric(c) || c == '.' || c == '-' || c == '_'; });
 }
 
 void make_output_folder(const fs::path& root) {
@@ -34,7 +37,8 @@ fs::path make_subfolder(const fs::path& root, const std::string& name) {
   std::error_code error;
   const fs::file_status status = fs::symlink_status(folder, error);
   if (fs::is_symlink(status)) {
-    throw InvalidInput(fmt::format("{}: is a symbolic link and would lead out of the output folder; remove it", folder.string()));
+    throw InvalidInput(
+        fmt::format("{}: is a symbolic link and would lead out of the output folder; remove it", folder.string()));
   }
   if (fs::exists(status) && !fs::is_directory(status)) {
     throw InvalidInput(fmt::format("{}: is a file where a folder is needed; remove it", folder.string()));

@@ -29,10 +29,12 @@ std::string rate_text(double rate, const std::string& unit) {
 
 std::string clock_text(double seconds) {
   const auto s = static_cast<long>(std::min(std::ceil(seconds), 3.6e8));
-  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60) : fmt::format("{}:{:02}", s / 60, s % 60);
+  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+                   : fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
-ProgressPrinter::ProgressPrinter(std::FILE* out, bool quiet) : out_(out), quiet_(quiet), terminal_(isatty(fileno(out)) == 1) {}
+ProgressPrinter::ProgressPrinter(std::FILE* out, bool quiet)
+    : out_(out), quiet_(quiet), terminal_(isatty(fileno(out)) == 1) {}
 
 void ProgressPrinter::begin(const std::vector<double>& work, std::string unit) {
   const std::lock_guard lock(mutex_);
@@ -76,7 +78,8 @@ void ProgressPrinter::finished(std::size_t index) {
 std::string ProgressPrinter::status() const {
   if (unit_.empty()) {
     const Job& job = jobs_.front();
-    return fmt::format("{}: {:3.0f} %{}", job.name, 100 * job.fraction, job.stage.empty() ? "" : fmt::format(" of {}", job.stage));
+    return fmt::format("{}: {:3.0f} %{}", job.name, 100 * job.fraction,
+                       job.stage.empty() ? "" : fmt::format(" of {}", job.stage));
   }
   double expected = 0, covered = 0, worked = 0;
   std::size_t done = 0;
@@ -92,7 +95,8 @@ std::string ProgressPrinter::status() const {
   const double elapsed = seconds_since(began_), fraction = expected > 0 ? covered / expected : 1;
   std::string text = fmt::format("{:3.0f} %, {} of {} runs", 100 * fraction, done, jobs_.size());
   if (elapsed > 1 && worked > 0) text += fmt::format(", {}", rate_text(worked / elapsed, unit_));
-  if (elapsed > 2 && fraction > 0.005) text += fmt::format(", {} left", clock_text(elapsed * (1 - fraction) / fraction));
+  if (elapsed > 2 && fraction > 0.005)
+    text += fmt::format(", {} left", clock_text(elapsed * (1 - fraction) / fraction));
   return running.empty() ? text : fmt::format("{} ({})", text, running);
 }
 

@@ -33,10 +33,10 @@ class ProgressPrinter {
  private:
   struct Job {
     std::string name;
-    double expected = 0;     // work of the whole job
-    double before = 0;       // work of its stages that are over
-    double current = 0;      // work of the current stage
-    double fraction = 0;     // of the current stage
+    double expected = 0;  // work of the whole job
+    double before = 0;    // work of its stages that are over
+    double current = 0;   // work of the current stage
+    double fraction = 0;  // of the current stage
     std::string stage;
     bool running = false, done = false;
   };

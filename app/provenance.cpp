@@ -1,11 +1,11 @@
 #include "app/provenance.hpp"
 
-#include <CLI/Version.hpp>
-#include <Eigen/Core>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <openssl/crypto.h>
 #include <sys/resource.h>
+#include <CLI/Version.hpp>
+#include <Eigen/Core>
 
 #include <ctime>
 
@@ -15,9 +15,12 @@
 namespace grainlaw::app {
 
 Stopwatch::Stopwatch()
-    : start_(std::chrono::steady_clock::now()), began_(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))) {}
+    : start_(std::chrono::steady_clock::now()),
+      began_(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))) {}
 
-double Stopwatch::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+double Stopwatch::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
 
 double peak_memory_megabytes() {
   rusage usage{};
@@ -40,7 +43,8 @@ OrderedJson provenance(const std::string& command, int threads, const Stopwatch&
       {"SUNDIALS", GRAINLAW_SUNDIALS_VERSION},
       {"Eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
-      {"nlohmann_json", fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
+      {"nlohmann_json",
+       fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
       {"CLI11", CLI11_VERSION},
       {"OpenSSL", std::string(OpenSSL_version(OPENSSL_VERSION_STRING))}};
   object["command"] = command;

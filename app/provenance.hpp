@@ -11,7 +11,7 @@ namespace grainlaw::app {
 /// Started with a command, asked when its files are written.
 class Stopwatch {
  public:
-  double seconds() const;           ///< wall time since construction [s]
+  double seconds() const;                              ///< wall time since construction [s]
   const std::string& began() const { return began_; }  ///< UTC, ISO 8601
   Stopwatch();
 

@@ -28,7 +28,8 @@ RunStore::RunStore(const fs::path& parent, const std::string& name) : root_(make
   if (lock_ < 0) throw Error(fmt::format("{}: cannot be created: {}", file.string(), std::strerror(errno)));
   if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
     close(lock_);
-    throw Error(fmt::format("{}: another grainlaw works in this folder; wait for it or give another -o", root_.string()));
+    throw Error(
+        fmt::format("{}: another grainlaw works in this folder; wait for it or give another -o", root_.string()));
   }
 }
 
@@ -66,7 +67,8 @@ void RunStore::finish(const std::string& key, const Json& request, const Ordered
   document["request"] = OrderedJson(request);
   OrderedJson& files = document["files"] = OrderedJson::object();
   std::map<std::string, std::string> sums;
-  for (const auto& entry : fs::directory_iterator(run)) sums[entry.path().filename().string()] = sha256_of_file(entry.path());
+  for (const auto& entry : fs::directory_iterator(run))
+    sums[entry.path().filename().string()] = sha256_of_file(entry.path());
   for (const auto& [name, sum] : sums) files[name] = sum;
   write_json(run / "run.json", document);
 }

@@ -36,7 +36,10 @@ OrderedJson packing_to_json(const dem::State& state, const dem::PackingOptions& 
 }
 
 OrderedJson relaxation_to_json(const dem::Relaxation& r) {
-  return {{"relaxed", r.relaxed}, {"max_net_force", r.max_net_force}, {"mean_contact_force", r.mean_contact_force}, {"passes", r.passes}};
+  return {{"relaxed", r.relaxed},
+          {"max_net_force", r.max_net_force},
+          {"mean_contact_force", r.mean_contact_force},
+          {"passes", r.passes}};
 }
 
 OrderedJson cost_to_json(const RunCost& cost) {
@@ -60,8 +63,12 @@ class PreparationFolder {
   }
 
   OrderedJson record(const Stopwatch& stopwatch) const {
-    return {{"kind", "preparation"}, {"packing", packing_},          {"states", states_},
-            {"warnings", warnings_}, {"cost", cost_to_json({0, 0, stopwatch.seconds()})}};
+    return {{"kind", "preparation"},
+            {"packing", packing_},
+            {"states", states_},
+            {"warnings", warnings_},
+            {"cost", cost_to_json({0, 0, stopwatch.seconds()})},
+            {"provenance", provenance("preparation", options_.engine.threads, stopwatch)}};
   }
 
  private:
@@ -70,10 +77,14 @@ class PreparationFolder {
     state.digest = key_;
     const std::string file = kept_file(kept.branch, kept.nu);
     dem::write_state(folder_ / file, state);
-    states_.push_back({{"branch", to_string(kept.branch)}, {"nu", kept.nu}, {"file", file}, {"relaxation", relaxation_to_json(kept.relaxation)}});
+    states_.push_back({{"branch", to_string(kept.branch)},
+                       {"nu", kept.nu},
+                       {"file", file},
+                       {"relaxation", relaxation_to_json(kept.relaxation)}});
     if (!kept.relaxation.relaxed) {
-      warnings_.push_back(fmt::format("state at nu = {} of the {} branch: not relaxed, max net force {:.3g} of the mean contact force",
-                                      kept.nu, to_string(kept.branch), kept.relaxation.max_net_force / kept.relaxation.mean_contact_force));
+      warnings_.push_back(fmt::format(
+          "state at nu = {} of the {} branch: not relaxed, max net force {:.3g} of the mean contact force", kept.nu,
+          to_string(kept.branch), kept.relaxation.max_net_force / kept.relaxation.mean_contact_force));
     }
     packing_ = packing_to_json(state, options_.packing, true);
   }
@@ -94,15 +105,19 @@ dem::State start_state(const RunStore& store, const TestStart& start, const Path
   if (!start.relax) return state;
   const dem::Relaxation relaxation = dem::relax(state, start.preparation.engine, start.preparation.relax, control);
   if (!relaxation.relaxed) {
-    throw NotConverged(fmt::format("relaxation of the given spheres: max net force {:.3g} N after {} passes; set relax to false to test them as they are",
-                                   relaxation.max_net_force, relaxation.passes));
+    throw NotConverged(
+        fmt::format("relaxation of the given spheres: max net force {:.3g} N after {} passes; set relax to false to "
+                    "test them as they are",
+                    relaxation.max_net_force, relaxation.passes));
   }
   return state;
 }
 
 }  // namespace
 
-std::string kept_file(Branch branch, double nu) { return fmt::format("{}-{}.state", to_string(branch), density_text(nu)); }
+std::string kept_file(Branch branch, double nu) {
+  return fmt::format("{}-{}.state", to_string(branch), density_text(nu));
+}
 
 Json preparation_request(const dem::PreparationOptions& o) {
   Json request{{"kind", "preparation"}, {"packing", packing_identity(o)}, {"rows", o.rows}};
@@ -112,14 +127,15 @@ Json preparation_request(const dem::PreparationOptions& o) {
 }
 
 Json test_request(const TestStart& start, const Path& path) {
-  Json request{{"kind", "test"}, {"path", Json(path_to_json(path))}, {"rows", start.preparation.rows}};
+  Json request{{"kind", "test"}, {"path", Json(path_to_json(path))}, {"rows", start.rows}};
   if (!start.given) {
     request["packing"] = packing_identity(start.preparation);
     return request;
   }
   const Json all = preparation_to_json(start.preparation);
   request["given"] = {{"sha256", start.given_digest}, {"relax", start.relax}};
-  for (const char* key : {"time_step_fraction", "skin", "strain_rate", "driving", "transport", "density", "stiffness", "contact_viscosity", "background_viscosity"}) {
+  for (const char* key : {"time_step_fraction", "skin", "strain_rate", "driving", "transport", "density", "stiffness",
+                          "contact_viscosity", "background_viscosity"}) {
     request["given"][key] = all[key];
   }
   return request;
@@ -145,7 +161,7 @@ Json ensure_test(const RunStore& store, const TestStart& start, const Path& path
   dem::ElementTestOptions options;
   options.engine = start.preparation.engine;
   options.drive = start.preparation.drive;
-  options.rows = start.preparation.rows;
+  options.rows = start.rows;
   const dem::ElementTest test = dem::run_element_test(state, resolve(path), options, control);
   const fs::path folder = store.begin(key);
   write_series(folder / "series.csv", test.rows);
@@ -156,7 +172,8 @@ Json ensure_test(const RunStore& store, const TestStart& start, const Path& path
                {{"kind", "test"},
                 {"packing", packing_to_json(state, start.preparation.packing, !start.given)},
                 {"warnings", test.warnings},
-                {"cost", cost_to_json({test.steps, test.time_step, stopwatch.seconds()})}});
+                {"cost", cost_to_json({test.steps, test.time_step, stopwatch.seconds()})},
+                {"provenance", provenance("element test", start.preparation.engine.threads, stopwatch)}});
   return store.find(key).value();
 }
 

@@ -17,7 +17,8 @@ namespace grainlaw::app {
 
 /// Where an element test starts: a kept state of a preparation, or a given state.
 struct TestStart {
-  dem::PreparationOptions preparation;  ///< engine, driving and rows of the test; and the packing unless `given`
+  dem::PreparationOptions preparation;  ///< engine and driving of the test; and the packing unless `given`
+  int rows = 200;                       ///< rows of each segment of the test
   std::optional<dem::State> given;      ///< of a table of spheres or a state file
   std::string given_digest;             ///< SHA-256 of what `given` came from
   bool relax = false;                   ///< minimise `given` before the test

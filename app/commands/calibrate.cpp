@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 
 #include "app/atomic_write.hpp"
 #include "app/dataset_runs.hpp"
@@ -24,9 +26,17 @@ namespace fs = std::filesystem;
 Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (fs::equivalent(from, to, error)) return dataset;
-  for (const DatasetTest& test : dataset.tests) copy_atomically(from / (test.record.name + ".csv"), to / (test.record.name + ".csv"));
+  for (const DatasetTest& test : dataset.tests)
+    copy_atomically(from / (test.record.name + ".csv"), to / (test.record.name + ".csv"));
   copy_atomically(from / "dataset.json", to / "dataset.json");
   return read_dataset(to);
+}
+
+/// Parameters of another spec must not stay beside this one's data, should the work be interrupted.
+void remove_results_of_others(const fs::path& output, const std::string& spec) {
+  std::ifstream file(output / "spec.resolved.json", std::ios::binary);
+  if (std::string{std::istreambuf_iterator<char>(file), {}} == spec) return;
+  for (const char* name : {"parameters.json", "calibration.json"}) fs::remove(output / name);
 }
 
 /// The folder itself, or its dataset/ when a calibration's folder was given.
@@ -47,7 +57,9 @@ std::vector<TestRecord> calibration_tests(const Dataset& dataset) {
 /// Refuses before anything runs what no fit can be made of.
 void check_tests(const std::vector<TestRecord>& tests, const std::string& name) {
   const auto missing = [&](const char* what, const char* mode) {
-    throw InvalidInput(fmt::format("{}: tests: none of role calibration is {}; add {{\"mode\": \"{}\", \"role\": \"calibration\"}}", name, what, mode));
+    throw InvalidInput(
+        fmt::format("{}: tests: none of role calibration is {}; add {{\"mode\": \"{}\", \"role\": \"calibration\"}}",
+                    name, what, mode));
   };
   if (std::none_of(tests.begin(), tests.end(), is_isotropic_unloading)) missing("an isotropic unloading", "ISO");
   if (std::none_of(tests.begin(), tests.end(), is_pure_shear)) missing("a shear at constant volume", "D2");
@@ -70,15 +82,18 @@ void log_warnings(const Dataset& dataset, Session& session) {
     if (first.empty()) first = fmt::format("{}: {}", test.record.name, test.warnings.front());
     ++tests;
   }
-  if (tests > 0) session.progress.log(fmt::format("warning: {} of {} tests have warnings (listed in dataset.json), e.g. {}", tests, dataset.tests.size(), first));
+  if (tests > 0)
+    session.progress.log(fmt::format("warning: {} of {} tests have warnings (listed in dataset.json), e.g. {}", tests,
+                                     dataset.tests.size(), first));
 }
 
-std::string summary_of(const fs::path& output, const Dataset& dataset, bool converged, const RunCounts& counts, const Session& session) {
+std::string summary_of(const fs::path& output, const Dataset& dataset, bool converged, const RunCounts& counts,
+                       const Session& session) {
   const std::string parameters = (output / "parameters.json").string();
   const double seconds = session.stopwatch.seconds(), memory = peak_memory_megabytes();
   if (!session.json) {
-    return fmt::format("{}\n{} runs ({} found finished), {} tests, {:.1f} s, {:.0f} MB\n{}\n", summary_table(output), counts.runs,
-                       counts.found, dataset.tests.size(), seconds, memory, parameters);
+    return fmt::format("{}\n{} runs ({} found finished), {} tests, {:.1f} s, {:.0f} MB\n{}\n", summary_table(output),
+                       counts.runs, counts.found, dataset.tests.size(), seconds, memory, parameters);
   }
   return json_text({{"folder", output.string()},
                     {"parameters", parameters},
@@ -91,7 +106,8 @@ std::string summary_of(const fs::path& output, const Dataset& dataset, bool conv
                     {"peak_memory_MB", memory}});
 }
 
-ExitCode fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output, const RunCounts& counts, Session& session) {
+ExitCode fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output,
+                      const RunCounts& counts, Session& session) {
   session.progress.begin({1}, "");
   const fit::Calibration calibration =
       fit::calibrate(calibration_tests(dataset), options, session.progress.control(0, "fit", session.stop));
@@ -100,7 +116,8 @@ ExitCode fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& opt
   write_calibration(output / "calibration.json", calibration, options, dataset.digest, origin);
   write_parameters(output / "parameters.json", {calibration, dataset.digest, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {
-    if (!stage.converged) session.progress.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
+    if (!stage.converged)
+      session.progress.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
   }
   print_result(summary_of(output, dataset, calibration.converged, counts, session));
   return calibration.converged ? ExitCode::ok : ExitCode::not_converged;
@@ -133,6 +150,7 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
 
   make_output_folder(options.output);
   const fs::path dataset_output = make_subfolder(options.output, "dataset");
+  remove_results_of_others(options.output, spec && !given ? json_text(spec_to_json(*spec)) : "");
   if (spec) write_json(options.output / "spec.resolved.json", spec_to_json(*spec));
   RunCounts counts;
   const Dataset dataset = given ? adopt(*given, from, dataset_output)

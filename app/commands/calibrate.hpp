@@ -11,10 +11,10 @@
 namespace grainlaw::app {
 
 struct CalibrateOptions {
-  std::filesystem::path spec;                     ///< SPEC.json; may be empty with `dataset`
-  std::filesystem::path output;                   ///< folder of the calibration
-  std::filesystem::path dataset;                  ///< fit this data set instead of running DEM; may be empty
-  std::optional<Coupling> coupling;               ///< instead of the spec's
+  std::filesystem::path spec;        ///< SPEC.json; may be empty with `dataset`
+  std::filesystem::path output;      ///< folder of the calibration
+  std::filesystem::path dataset;     ///< fit this data set instead of running DEM; may be empty
+  std::optional<Coupling> coupling;  ///< instead of the spec's
 };
 
 ExitCode calibrate(const CalibrateOptions& options, Session& session);

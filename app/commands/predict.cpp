@@ -36,8 +36,10 @@ struct Law {
   predict::ValidRange range;
   RunControl control;
 
-  predict::Prediction along(Model model, const LawState<double>& start, const std::vector<predict::OutputPoint>& points) const {
-    return predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points, predict::Tolerances{}, range, control);
+  predict::Prediction along(Model model, const LawState<double>& start,
+                            const std::vector<predict::OutputPoint>& points) const {
+    return predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points,
+                            predict::Tolerances{}, range, control);
   }
 };
 
@@ -46,7 +48,8 @@ void add_free_curves(const Law& law, const PredictOptions& options, PredictionFo
   const auto points = predict::uniform_points(law.segments, kPointsPerSegment);
   const auto start = predict::state_from_law(law.calibration.parameters, content.path.nu);
   for (const Model model : models_of(options)) {
-    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", predict::to_string(model)), law.along(model, start, points)});
+    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", predict::to_string(model)),
+                              law.along(model, start, points)});
   }
 }
 
@@ -57,9 +60,11 @@ void add_compared_curves(const Law& law, const PredictOptions& options, Predicti
     const std::uint64_t seed = test.record.packing.seed;
     for (const Model model : models_of(options)) {
       for (const Initial initial : initials_of(options)) {
-        const auto start = initial == Initial::law ? predict::state_from_law(law.calibration.parameters, content.path.nu)
-                                                   : predict::state_from_row(test.record.rows.front());
-        PredictedCurve curve{model, initial, seed, fmt::format("{}-{}-s{}.csv", predict::to_string(model), to_string(initial), seed),
+        const auto start = initial == Initial::law
+                               ? predict::state_from_law(law.calibration.parameters, content.path.nu)
+                               : predict::state_from_row(test.record.rows.front());
+        PredictedCurve curve{model, initial, seed,
+                             fmt::format("{}-{}-s{}.csv", predict::to_string(model), to_string(initial), seed),
                              law.along(model, start, points)};
         content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
         content.curves.push_back(std::move(curve));
@@ -73,17 +78,20 @@ void add_compared_curves(const Law& law, const PredictOptions& options, Predicti
 Dataset run_dem(const PredictOptions& options, const Spec& spec, const PathFile& path, Session& session) {
   const std::string name = options.path.string();
   const auto tests = plan(spec, path, new_seeds(spec, path, options.seeds, name), name);
-  const fs::path parent = !options.store.empty() ? options.store
-                          : options.parameters.has_parent_path() ? options.parameters.parent_path() : fs::path(".");
+  const fs::path parent = !options.store.empty()                 ? options.store
+                          : options.parameters.has_parent_path() ? options.parameters.parent_path()
+                                                                 : fs::path(".");
   make_output_folder(parent);
   RunCounts counts;
-  return run_planned(tests, Json(spec_to_json(spec)), make_subfolder(options.output, "dem"), RunStore(parent, "runs"), session, counts);
+  return run_planned(tests, Json(spec_to_json(spec)), make_subfolder(options.output, "dem"), RunStore(parent, "runs"),
+                     session, counts);
 }
 
 Spec spec_beside(const PredictOptions& options) {
   const fs::path file = options.spec.empty() ? options.parameters.parent_path() / "spec.resolved.json" : options.spec;
   if (options.spec.empty() && !fs::exists(file)) {
-    throw InvalidInput(fmt::format("{}: not found; --dem prepares packings by the calibration's spec, give it with --spec", file.string()));
+    throw InvalidInput(fmt::format(
+        "{}: not found; --dem prepares packings by the calibration's spec, give it with --spec", file.string()));
   }
   return read_spec(file);
 }
@@ -107,13 +115,15 @@ std::string text_of(const PredictionFolder& content, const fs::path& output) {
   for (const PredictedCurve& curve : content.curves) {
     if (curve.seed || curve.prediction.rows.empty()) continue;
     const predict::PredictedRow& end = curve.prediction.rows.back();
-    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n", predict::to_string(curve.model), to_string(curve.initial),
-                        end.nu, end.state.P, end.s_par, end.F_par, curve.prediction.unjammed ? "  (unjammed)" : "");
+    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n",
+                        predict::to_string(curve.model), to_string(curve.initial), end.nu, end.state.P, end.s_par,
+                        end.F_par, curve.prediction.unjammed ? "  (unjammed)" : "");
   }
   for (const CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
     text += fmt::format("{:<9} {:<8}", predict::to_string(entry.model), to_string(entry.initial));
-    for (const auto& q : entry.comparison.quantities) text += fmt::format("  {} bias {:+.4f} rms {:.1f} %", q.quantity, q.bias, 100 * q.normalised_rms);
+    for (const auto& q : entry.comparison.quantities)
+      text += fmt::format("  {} bias {:+.4f} rms {:.1f} %", q.quantity, q.bias, 100 * q.normalised_rms);
     text += "\n";
   }
   return text + (output / "prediction.json").string() + "\n";
@@ -129,8 +139,12 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   for (const Model model : models_of(options)) require_parameters(parameters, model, options.parameters.string());
   const PathFile path = read_path(options.path);
   const fit::Calibration& calibration = parameters.calibration;
-  const Law law{calibration, resolve(path.path), {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max}, {{}, session.stop}};
-  predict::state_from_law(calibration.parameters, path.path.nu);  // refuses a start below jamming before anything is written
+  const Law law{calibration,
+                resolve(path.path),
+                {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max},
+                {{}, session.stop}};
+  predict::state_from_law(calibration.parameters,
+                          path.path.nu);  // refuses a start below jamming before anything is written
   std::optional<Spec> spec;
   if (options.dem) {
     spec = spec_beside(options);
@@ -141,7 +155,9 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   PredictionFolder content;
   content.name = options.output.filename().string();
   content.path = path.path;
-  content.parameters = {{"file", options.parameters.string()}, {"sha256", sha256_of_file(options.parameters)}, {"dataset_digest", parameters.dataset_digest}};
+  content.parameters = {{"file", options.parameters.string()},
+                        {"sha256", sha256_of_file(options.parameters)},
+                        {"dataset_digest", parameters.dataset_digest}};
   if (options.dem) content.dem = run_dem(options, *spec, path, session);
   if (options.initial != Initial::measured) add_free_curves(law, options, content);
   if (content.dem) add_compared_curves(law, options, content);

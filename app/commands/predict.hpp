@@ -14,15 +14,16 @@
 namespace grainlaw::app {
 
 struct PredictOptions {
-  std::filesystem::path parameters;          ///< parameters.json of a calibration
-  std::filesystem::path path;                ///< PATH.json
-  std::filesystem::path output;              ///< folder of the prediction
-  std::optional<predict::Model> model;       ///< none: both
-  std::optional<Initial> initial;            ///< none: law, and measured too with `dem`
-  bool dem = false;                          ///< run the path in the engine too
-  std::vector<std::uint64_t> seeds;          ///< of the new packings; empty: PATH's, else as many as calibrated, following those
-  std::filesystem::path spec;                ///< SPEC of the packings; empty: spec.resolved.json beside `parameters`
-  std::filesystem::path store;               ///< folder with the runs; empty: that of `parameters`
+  std::filesystem::path parameters;     ///< parameters.json of a calibration
+  std::filesystem::path path;           ///< PATH.json
+  std::filesystem::path output;         ///< folder of the prediction
+  std::optional<predict::Model> model;  ///< none: both
+  std::optional<Initial> initial;       ///< none: law, and measured too with `dem`
+  bool dem = false;                     ///< run the path in the engine too
+  std::vector<std::uint64_t>
+      seeds;                    ///< of the new packings; empty: PATH's, else as many as calibrated, following those
+  std::filesystem::path spec;   ///< SPEC of the packings; empty: spec.resolved.json beside `parameters`
+  std::filesystem::path store;  ///< folder with the runs; empty: that of `parameters`
 };
 
 ExitCode run_prediction(const PredictOptions& options, Session& session);

@@ -25,9 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TestStart start_of(const TestFile& test) {
-  TestStart start{test.preparation, test.given, "", test.relax};
-  if (test.given) start.given_digest = test.given_digest;
-  return start;
+  return {test.preparation, test.preparation.rows, test.given, test.given_digest, test.relax};
 }
 
 /// The jobs of the file: the preparation unless the packing is given, then the test unless there is none.
@@ -37,8 +35,7 @@ void run(const TestFile& test, const RunStore& store, Session& session) {
     const bool done = store.find(run_key(preparation_request(test.preparation))).has_value();
     const auto particles = static_cast<double>(test.preparation.packing.particles);
     jobs.push_back({fmt::format("preparation of seed {}", test.preparation.packing.seed),
-                    done ? 0 : particles * expected_steps(test.preparation),
-                    std::nullopt,
+                    done ? 0 : particles * expected_steps(test.preparation), std::nullopt,
                     [&](int threads, const RunControl& control) {
                       dem::PreparationOptions options = test.preparation;
                       options.engine.threads = threads;
@@ -46,18 +43,27 @@ void run(const TestFile& test, const RunStore& store, Session& session) {
                     }});
   }
   if (test.start != Start::preparation) {
-    const double particles = test.given ? static_cast<double>(test.given->packing.size()) : static_cast<double>(test.preparation.packing.particles);
+    const double particles = test.given ? static_cast<double>(test.given->packing.size())
+                                        : static_cast<double>(test.preparation.packing.particles);
     const bool done = store.find(run_key(test_request(start_of(test), test.path))).has_value();
-    jobs.push_back({"element test",
-                    done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
-                    jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
-                    [&](int threads, const RunControl& control) {
-                      TestStart start = start_of(test);
-                      start.preparation.engine.threads = threads;
-                      ensure_test(store, start, test.path, control);
-                    }});
+    jobs.push_back(
+        {"element test", done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
+         jobs.empty() ? std::nullopt : std::optional<std::size_t>(0), [&](int threads, const RunControl& control) {
+           TestStart start = start_of(test);
+           start.preparation.engine.threads = threads;
+           ensure_test(store, start, test.path, control);
+         }});
   }
   run_jobs(jobs, session.threads, session.progress, session.stop);
+}
+
+/// What unloading.csv was observed on.
+Path unloading_branch(const dem::PreparationOptions& options) {
+  TestRequest iso;
+  iso.mode = "ISO";
+  Spec spec;
+  spec.preparation = options;
+  return path_of(iso, 0, spec);
 }
 
 std::string value_text(double value) { return std::isnan(value) ? "undefined" : fmt::format("{:.6g}", value); }
@@ -66,7 +72,8 @@ std::string value_text(double value) { return std::isnan(value) ? "undefined" : 
 OrderedJson end_values(const Observation& row) {
   OrderedJson values;
   for (const auto& column : observation_columns()) {
-    for (const char* wanted : {"time", "eps_vol", "eps_dev", "nu", "P_star", "s_dev", "F_v", "F_dev", "C_star", "rattler_fraction", "energy_residual"}) {
+    for (const char* wanted : {"time", "eps_vol", "eps_dev", "nu", "P_star", "s_dev", "F_v", "F_dev", "C_star",
+                               "rattler_fraction", "energy_residual"}) {
       if (column.name == wanted) values[column.title()] = number_or_null(column.get(row));
     }
   }
@@ -81,7 +88,8 @@ OrderedJson cell_to_json(const Eigen::Matrix3d& H) {
 }
 
 /// Copies the files of a finished run into the user's folder.
-std::vector<std::string> publish(const RunStore& store, const std::string& key, const Json& record, const fs::path& folder) {
+std::vector<std::string> publish(const RunStore& store, const std::string& key, const Json& record,
+                                 const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& file : record.at("files").items()) {
     copy_atomically(store.folder(key) / file.key(), folder / file.key());
@@ -99,11 +107,13 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
   run(test, store, session);
 
   const bool prepared = test.start == Start::preparation;
-  const std::string key = run_key(prepared ? preparation_request(test.preparation) : test_request(start_of(test), test.path));
+  const std::string key =
+      run_key(prepared ? preparation_request(test.preparation) : test_request(start_of(test), test.path));
   const Json record = store.find(key).value();
   std::vector<std::string> files = publish(store, key, record, options.output);
-  const Path path = prepared ? path_of({"ISO", "ISO", Branch::unloading, {}, 0, {}, Role::validation}, 0, {test.preparation, {}, {}, {}, {}, {}}) : test.path;
-  const auto rows = read_series(options.output / (prepared ? "unloading.csv" : "series.csv"), path, packing_from_record(record));
+  const Path path = prepared ? unloading_branch(test.preparation) : test.path;
+  const auto rows =
+      read_series(options.output / (prepared ? "unloading.csv" : "series.csv"), path, packing_from_record(record));
   OrderedJson summary{{"format", "grainlaw simulation"}, {"format_version", 1}, {"run", key}, {"rows", rows.size()}};
   summary["packing"] = OrderedJson(record.at("packing"));
   if (prepared) {
@@ -127,10 +137,12 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
     print_result(json_text(summary));
     return ExitCode::ok;
   }
-  std::string text = fmt::format("{} spheres, {} rows, end of the {}:\n", record.at("packing").at("particles").get<std::int64_t>(),
-                                 rows.size(), prepared ? "unloading branch" : "path");
+  std::string text =
+      fmt::format("{} spheres, {} rows, end of the {}:\n", record.at("packing").at("particles").get<std::int64_t>(),
+                  rows.size(), prepared ? "unloading branch" : "path");
   for (const auto& value : summary["end"].items()) {
-    text += fmt::format("  {:<18} {}\n", value.key(), value.value().is_null() ? "undefined" : value_text(value.value().get<double>()));
+    text += fmt::format("  {:<18} {}\n", value.key(),
+                        value.value().is_null() ? "undefined" : value_text(value.value().get<double>()));
   }
   text += fmt::format("in {}\n", (options.output / "simulation.json").string());
   print_result(text);

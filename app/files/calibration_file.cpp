@@ -66,7 +66,8 @@ fit::Stage stage_from_json(const Json& object) {
   stage.termination = object.at("termination");
   stage.converged = object.at("converged");
   stage.seconds = object.at("seconds");
-  for (const auto& item : object.at("estimates").items()) stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
+  for (const auto& item : object.at("estimates").items())
+    stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
   for (const Json& residual : object.at("tests")) stage.tests.push_back(residual_from_json(residual));
   return stage;
 }
@@ -126,7 +127,8 @@ OrderedJson curves_to_json(const fit::Calibration& calibration) {
 }  // namespace
 
 void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
-                       const fit::CalibrationOptions& options, const std::string& dataset_digest, const OrderedJson& provenance) {
+                       const fit::CalibrationOptions& options, const std::string& dataset_digest,
+                       const OrderedJson& provenance) {
   OrderedJson document;
   document["format"] = "grainlaw calibration";
   document["format_version"] = 1;

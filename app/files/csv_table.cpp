@@ -33,7 +33,8 @@ CsvReader::CsvReader(const std::filesystem::path& file)
     : name_(one_line(file.string(), 200)), in_(std::fopen(file.c_str(), "rb"), std::fclose), buffer_(1 << 16) {
   std::error_code error;
   if (!in_ || std::filesystem::is_directory(file, error)) {
-    throw InvalidInput(fmt::format("{}: cannot be opened: {}; give a CSV file", name_, in_ ? "is a folder" : std::strerror(errno)));
+    throw InvalidInput(
+        fmt::format("{}: cannot be opened: {}; give a CSV file", name_, in_ ? "is a folder" : std::strerror(errno)));
   }
   if (!next_line()) throw InvalidInput(fmt::format("{}: is empty; the first line must name the columns", name_));
   if (std::string_view(line_).substr(0, 3) == "\xEF\xBB\xBF") {
@@ -46,7 +47,8 @@ CsvReader::CsvReader(const std::filesystem::path& file)
   for (std::size_t i = 0; i < fields.size(); ++i) {
     for (const std::string& earlier : header_) {
       if (earlier == fields[i]) {
-        throw InvalidInput(fmt::format("{}: header: column '{}' is given twice; keep one", name_, one_line(fields[i], 60)));
+        throw InvalidInput(
+            fmt::format("{}: header: column '{}' is given twice; keep one", name_, one_line(fields[i], 60)));
       }
     }
     header_.emplace_back(fields[i]);
@@ -59,7 +61,8 @@ bool CsvReader::next_line() {
     if (begin_ == end_) {
       begin_ = 0;
       end_ = std::fread(buffer_.data(), 1, buffer_.size(), in_.get());
-      if (std::ferror(in_.get())) throw InvalidInput(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
+      if (std::ferror(in_.get()))
+        throw InvalidInput(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
       if (end_ == 0) break;
     }
     const char* const from = buffer_.data() + begin_;
@@ -86,7 +89,8 @@ bool CsvReader::next(std::vector<double>& values) {
   const auto fields = split_fields(line_);
   if (fields.size() != header_.size()) {
     refuse("", fmt::format("{} fields where the header has {} (numbers are written with a decimal point)",
-                           fields.size() > kMaxCsvColumns ? fmt::format("more than {}", kMaxCsvColumns) : fmt::format("{}", fields.size()),
+                           fields.size() > kMaxCsvColumns ? fmt::format("more than {}", kMaxCsvColumns)
+                                                          : fmt::format("{}", fields.size()),
                            header_.size()));
   }
   values.resize(fields.size());
@@ -98,8 +102,9 @@ bool CsvReader::next(std::vector<double>& values) {
     }
     const auto [rest, code] = std::from_chars(field.data(), field.data() + field.size(), values[i]);
     if (code != std::errc{} || rest != field.data() + field.size() || !std::isfinite(values[i])) {
-      refuse(header_[i], fmt::format("'{}' is not a finite number; write it like 1.5e-3, or leave the field empty where undefined",
-                                     one_line(field, 40)));
+      refuse(header_[i],
+             fmt::format("'{}' is not a finite number; write it like 1.5e-3, or leave the field empty where undefined",
+                         one_line(field, 40)));
     }
   }
   return true;
@@ -107,8 +112,9 @@ bool CsvReader::next(std::vector<double>& values) {
 
 void CsvReader::refuse(const std::string& column, const std::string& reason) const {
   const std::string where = row_ == 0 ? "header" : fmt::format("row {}", row_);
-  throw InvalidInput(column.empty() ? fmt::format("{}: {}: {}", name_, where, reason)
-                                    : fmt::format("{}: {}, column '{}': {}", name_, where, one_line(column, 60), reason));
+  throw InvalidInput(column.empty()
+                         ? fmt::format("{}: {}: {}", name_, where, reason)
+                         : fmt::format("{}: {}, column '{}': {}", name_, where, one_line(column, 60), reason));
 }
 
 }  // namespace grainlaw::app

@@ -11,9 +11,9 @@
 
 namespace grainlaw::app {
 
-inline constexpr std::size_t kMaxCsvLine = 1u << 20;   ///< longer lines are refused [byte]
-inline constexpr std::size_t kMaxCsvColumns = 1000;    ///< more are refused
-inline constexpr std::size_t kMaxCsvRows = 1000000;    ///< more are refused
+inline constexpr std::size_t kMaxCsvLine = 1u << 20;  ///< longer lines are refused [byte]
+inline constexpr std::size_t kMaxCsvColumns = 1000;   ///< more are refused
+inline constexpr std::size_t kMaxCsvRows = 1000000;   ///< more are refused
 
 /// Reads a table row by row. Throws InvalidInput naming file, row (1 is the first below the header) and column.
 class CsvReader {

@@ -59,9 +59,10 @@ DatasetTest read_test(const Json& object, const fs::path& folder, const std::str
   test.record.rows = read_series(file, test.record.path, test.record.packing);
   test.sha256 = sha256_of_file(file);
   if (object.contains("sha256") && object["sha256"] != test.sha256) {
-    throw InvalidInput(fmt::format("{}: is not the file that {} was written with (SHA-256 differs); restore it, or remove {}.sha256 "
-                                   "and digest from {} to accept it",
-                                   file.string(), index, place, index));
+    throw InvalidInput(
+        fmt::format("{}: is not the file that {} was written with (SHA-256 differs); restore it, or remove {}.sha256 "
+                    "and digest from {} to accept it",
+                    file.string(), index, place, index));
   }
   test.run = object.value("run", "");
   if (object.contains("cost")) {
@@ -85,7 +86,8 @@ Dataset read_dataset(const fs::path& folder) {
     const Json& object = document["tests"][i];
     const std::string place = fmt::format("tests[{}]", i);
     if (!names.insert(object["name"]).second) {
-      throw InvalidInput(fmt::format("{}: {}.name: '{}' is given twice; rename one", name, place, object["name"].get<std::string>()));
+      throw InvalidInput(
+          fmt::format("{}: {}.name: '{}' is given twice; rename one", name, place, object["name"].get<std::string>()));
     }
     dataset.tests.push_back(read_test(object, folder, name, place));
   }
@@ -100,7 +102,8 @@ Dataset read_dataset(const fs::path& folder) {
   }
   dataset.digest = digest_of(dataset);
   if (document.contains("digest") && document["digest"] != dataset.digest) {
-    throw InvalidInput(fmt::format("{}: digest: does not match the tests, which give {}; remove the key to accept them", name, dataset.digest));
+    throw InvalidInput(fmt::format("{}: digest: does not match the tests, which give {}; remove the key to accept them",
+                                   name, dataset.digest));
   }
   return dataset;
 }

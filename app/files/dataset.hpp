@@ -29,10 +29,10 @@ struct DatasetTest {
 
 struct Dataset {
   std::vector<DatasetTest> tests;
-  Json spec;                          ///< resolved SPEC; null when unknown
+  Json spec;  ///< resolved SPEC; null when unknown
   std::vector<std::uint64_t> seeds;
-  Json provenance;                    ///< of the maker; null when unknown
-  std::string digest;                 ///< SHA-256 over names, roles, paths, packings and CSV digests
+  Json provenance;     ///< of the maker; null when unknown
+  std::string digest;  ///< SHA-256 over names, roles, paths, packings and CSV digests
 };
 
 /// Reads and checks everything. Throws InvalidInput naming file, key or row; digests that are given must match.

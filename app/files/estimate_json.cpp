@@ -10,7 +10,8 @@
 namespace grainlaw::app {
 namespace {
 
-constexpr std::array kStatuses{fit::Status::fitted, fit::Status::fixed, fit::Status::tied, fit::Status::at_bound, fit::Status::not_identified};
+constexpr std::array kStatuses{fit::Status::fitted, fit::Status::fixed, fit::Status::tied, fit::Status::at_bound,
+                               fit::Status::not_identified};
 
 fit::Status status_from(const std::string& text) {
   for (const fit::Status status : kStatuses) {
@@ -35,7 +36,8 @@ fit::Estimate estimate_from_json(const Json& object) {
   fit::Estimate estimate{number_or_nan(object.at("value")), number_or_nan(object.at("standard_error")),
                          status_from(object.at("status")), object.value("note", "")};
   if ((estimate.status == fit::Status::not_identified) != std::isnan(estimate.value)) {
-    throw InvalidInput(fmt::format("value: must be null exactly when the status is '{}'", to_string(fit::Status::not_identified)));
+    throw InvalidInput(
+        fmt::format("value: must be null exactly when the status is '{}'", to_string(fit::Status::not_identified)));
   }
   return estimate;
 }

@@ -54,7 +54,8 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
 
   bool parse_error(std::size_t, const std::string& last_token, const nlohmann::detail::exception& error) override {
     constexpr int kNumberOverflow = 406;
-    if (error.id == kNumberOverflow) refuse(fmt::format("{} is beyond the range of numbers; give a finite number", one_line(last_token, 40)));
+    if (error.id == kNumberOverflow)
+      refuse(fmt::format("{} is beyond the range of numbers; give a finite number", one_line(last_token, 40)));
     std::string reason = error.what();
     if (const auto end_of_tag = reason.find("] "); end_of_tag != std::string::npos) reason.erase(0, end_of_tag + 2);
     refuse(one_line(reason, 200) + "; the file must be one JSON document in UTF-8");
@@ -121,7 +122,8 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
 
   [[noreturn]] void refuse(const std::string& reason) const {
     const std::string where = place();
-    throw InvalidInput(where.empty() ? fmt::format("{}: {}", name_, reason) : fmt::format("{}: {}: {}", name_, where, reason));
+    throw InvalidInput(where.empty() ? fmt::format("{}: {}", name_, reason)
+                                     : fmt::format("{}: {}: {}", name_, where, reason));
   }
 
   const std::string& name_;
@@ -195,13 +197,16 @@ Json read_json(const std::filesystem::path& file, JsonSource source) {
     throw InvalidInput(fmt::format("{}: is a folder; give a JSON file", name));
   }
   const std::unique_ptr<std::FILE, decltype(&std::fclose)> in(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!in) throw InvalidInput(fmt::format("{}: cannot be opened: {}; give the path of a JSON file", name, std::strerror(errno)));
+  if (!in)
+    throw InvalidInput(
+        fmt::format("{}: cannot be opened: {}; give the path of a JSON file", name, std::strerror(errno)));
   std::string text;
   std::vector<char> buffer(1 << 16);
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) {
     text.append(buffer.data(), n);
     if (text.size() > kMaxJsonBytes) {
-      throw InvalidInput(fmt::format("{}: is larger than {} MB; no document of this kind is", name, kMaxJsonBytes >> 20));
+      throw InvalidInput(
+          fmt::format("{}: is larger than {} MB; no document of this kind is", name, kMaxJsonBytes >> 20));
     }
   }
   if (std::ferror(in.get())) throw InvalidInput(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));

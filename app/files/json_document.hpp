@@ -10,8 +10,8 @@
 
 namespace grainlaw::app {
 
-using Json = nlohmann::json;                  ///< keys sorted: dump() is the canonical form that digests are taken of
-using OrderedJson = nlohmann::ordered_json;   ///< keys in the order of writing: what files are written from
+using Json = nlohmann::json;                 ///< keys sorted: dump() is the canonical form that digests are taken of
+using OrderedJson = nlohmann::ordered_json;  ///< keys in the order of writing: what files are written from
 
 inline constexpr std::size_t kMaxJsonBytes = 64u << 20;  ///< larger documents are refused before parsing [byte]
 inline constexpr int kMaxJsonDepth = 32;                 ///< deeper nesting is refused while parsing

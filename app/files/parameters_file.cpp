@@ -23,7 +23,8 @@ OrderedJson covariance_to_json(const fit::Calibration& c) {
   for (const std::size_t i : present) {
     names.push_back(parameter_table()[i].name);
     OrderedJson row = OrderedJson::array();
-    for (const std::size_t j : present) row.push_back(c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    for (const std::size_t j : present)
+      row.push_back(c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
     matrix.push_back(row);
   }
   return {{"names", names}, {"matrix", matrix}};
@@ -33,9 +34,11 @@ void read_covariance(const Json& object, Eigen::MatrixXd& covariance) {
   const Json &names = object["names"], &matrix = object["matrix"];
   std::vector<Eigen::Index> index;
   for (const Json& name : names) index.push_back(static_cast<Eigen::Index>(parameter_index(name)));
-  if (matrix.size() != index.size()) throw InvalidInput("covariance.matrix: needs one row for each of covariance.names");
+  if (matrix.size() != index.size())
+    throw InvalidInput("covariance.matrix: needs one row for each of covariance.names");
   for (std::size_t i = 0; i < index.size(); ++i) {
-    if (matrix[i].size() != index.size()) throw InvalidInput(fmt::format("covariance.matrix[{}]: needs {} numbers", i, index.size()));
+    if (matrix[i].size() != index.size())
+      throw InvalidInput(fmt::format("covariance.matrix[{}]: needs {} numbers", i, index.size()));
     for (std::size_t j = 0; j < index.size(); ++j) covariance(index[i], index[j]) = matrix[i][j].get<double>();
   }
 }
@@ -46,7 +49,8 @@ bool without_exponential(const ParametersFile& parameters, std::size_t alpha) {
   const std::string group = name.substr(0, name.find('.'));
   if (group == "coordination") return false;
   const std::size_t Q_c = parameter_index(group + ".Q_c");
-  return parameters.calibration.estimates[Q_c].status != fit::Status::not_identified && *fields(parameters.calibration.parameters)[Q_c] == 0;
+  return parameters.calibration.estimates[Q_c].status != fit::Status::not_identified &&
+         *fields(parameters.calibration.parameters)[Q_c] == 0;
 }
 
 }  // namespace
@@ -71,7 +75,8 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
     table[info.name] = entry;
   }
   document["covariance"] = covariance_to_json(c);
-  document["ranges"] = {{"nu", {c.nu_min, c.nu_max}}, {"eps_dev", {0.0, c.eps_dev_max}}, {"eps_vol", {0.0, c.eps_vol_max}}};
+  document["ranges"] = {
+      {"nu", {c.nu_min, c.nu_max}}, {"eps_dev", {0.0, c.eps_dev_max}}, {"eps_vol", {0.0, c.eps_vol_max}}};
   if (!parameters.dataset_digest.empty()) document["dataset_digest"] = parameters.dataset_digest;
   if (!parameters.provenance.is_null()) document["provenance"] = OrderedJson(parameters.provenance);
   write_json(file, document);
@@ -103,7 +108,8 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
       }
       if (estimate.status == fit::Status::not_identified) continue;
       if (!(estimate.value >= info.lower && estimate.value <= info.upper)) {
-        throw InvalidInput(fmt::format("parameters.{}.value: {} is outside its bounds [{}, {}]", info.name, estimate.value, info.lower, info.upper));
+        throw InvalidInput(fmt::format("parameters.{}.value: {} is outside its bounds [{}, {}]", info.name,
+                                       estimate.value, info.lower, info.upper));
       }
       *values[i] = estimate.value;
     }
@@ -123,7 +129,8 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
 
 void require_parameters(const ParametersFile& parameters, predict::Model model, const std::string& name) {
   std::vector<std::string> needed;
-  for (const char* group : {"coordination", "rattlers", "pressure", "shear.nu_c", "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"}) {
+  for (const char* group : {"coordination", "rattlers", "pressure", "shear.nu_c", "stress_ratio_max", "stress_rate",
+                            "fabric_max", "fabric_rate"}) {
     needed.emplace_back(group);
   }
   if (model == predict::Model::evolution) {
@@ -136,8 +143,9 @@ void require_parameters(const ParametersFile& parameters, predict::Model model, 
       const fit::Estimate& estimate = parameters.calibration.estimates[i];
       const bool read = !parameter.ends_with(".alpha") || !without_exponential(parameters, i);
       if (read && estimate.status == fit::Status::not_identified) {
-        throw InvalidInput(fmt::format("{}: parameters.{}: is not identified and the {} model needs it{}{}; calibrate with tests that contain it",
-                                       name, parameter, to_string(model), estimate.note.empty() ? "" : ": ", estimate.note));
+        throw InvalidInput(fmt::format(
+            "{}: parameters.{}: is not identified and the {} model needs it{}{}; calibrate with tests that contain it",
+            name, parameter, to_string(model), estimate.note.empty() ? "" : ": ", estimate.note));
       }
     }
   }

@@ -17,7 +17,8 @@ Mode mode_from(const std::string& text) {
 StrainRate rate_from(const Json& rows) {
   StrainRate rate;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) rate.tensor(i, j) = rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)).get<double>();
+    for (int j = 0; j < 3; ++j)
+      rate.tensor(i, j) = rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)).get<double>();
   }
   return rate;
 }
@@ -25,11 +26,14 @@ StrainRate rate_from(const Json& rows) {
 PathSegment segment_from(const Json& object, const std::string& where, bool both) {
   PathSegment segment;
   const bool has_mode = object.contains("mode"), has_tensor = object.contains("rate_tensor");
-  if (!has_mode && !has_tensor) throw InvalidInput(fmt::format("{}: misses its direction; give mode or rate_tensor", where));
-  if (has_mode && has_tensor && !both) throw InvalidInput(fmt::format("{}: has mode and rate_tensor; give one of them", where));
+  if (!has_mode && !has_tensor)
+    throw InvalidInput(fmt::format("{}: misses its direction; give mode or rate_tensor", where));
+  if (has_mode && has_tensor && !both)
+    throw InvalidInput(fmt::format("{}: has mode and rate_tensor; give one of them", where));
   if (has_tensor) {
     for (const char* key : {"axes", "reverse"}) {
-      if (object.contains(key)) throw InvalidInput(fmt::format("{}.{}: belongs to a mode; write it into rate_tensor", where, key));
+      if (object.contains(key))
+        throw InvalidInput(fmt::format("{}.{}: belongs to a mode; write it into rate_tensor", where, key));
     }
     segment.mode = has_mode ? mode_from(object["mode"]) : Mode::tensor;
     segment.direction = rate_from(object["rate_tensor"]);
@@ -54,7 +58,8 @@ Branch branch_from_json(const Json& object) {
   return object.value("branch", "unloading") == "loading" ? Branch::loading : Branch::unloading;
 }
 
-std::vector<PathSegment> segments_from_json(const Json& segments, const std::string& name, const std::string& place, bool both) {
+std::vector<PathSegment> segments_from_json(const Json& segments, const std::string& name, const std::string& place,
+                                            bool both) {
   std::vector<PathSegment> result;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     result.push_back(segment_from(segments[i], fmt::format("{}: {}segments[{}]", name, place, i), both));

@@ -12,7 +12,8 @@ namespace grainlaw::app {
 /// extents that cannot be reached and volume fractions beyond 0.9.
 Path path_from_json(const Json& document, const std::string& name, const std::string& place, bool both);
 
-std::vector<PathSegment> segments_from_json(const Json& segments, const std::string& name, const std::string& place, bool both);
+std::vector<PathSegment> segments_from_json(const Json& segments, const std::string& name, const std::string& place,
+                                            bool both);
 
 /// initial and segments, directions written out in full.
 OrderedJson path_to_json(const Path& path);

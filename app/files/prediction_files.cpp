@@ -18,7 +18,9 @@ using predict::Model;
 using predict::QuantityComparison;
 
 OrderedJson head(Model model, Initial initial, const std::optional<std::uint64_t>& seed) {
-  return {{"model", predict::to_string(model)}, {"initial", to_string(initial)}, {"seed", seed ? OrderedJson(*seed) : OrderedJson(nullptr)}};
+  return {{"model", predict::to_string(model)},
+          {"initial", to_string(initial)},
+          {"seed", seed ? OrderedJson(*seed) : OrderedJson(nullptr)}};
 }
 
 template <class Entry>
@@ -51,7 +53,8 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
   PredictedCurve curve;
   read_head(object, curve);
   curve.file = object.at("file");
-  if (!is_safe_name(curve.file)) throw InvalidInput(fmt::format("file: '{}' is no name of a file", one_line(curve.file, 60)));
+  if (!is_safe_name(curve.file))
+    throw InvalidInput(fmt::format("file: '{}' is no name of a file", one_line(curve.file, 60)));
   curve.prediction.model = curve.model;
   curve.prediction.unjammed = object.at("unjammed");
   if (curve.prediction.unjammed) {
@@ -60,8 +63,9 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
   }
   curve.prediction.warnings = object.at("warnings").get<std::vector<std::string>>();
   const Json& s = object.at("solver");
-  curve.prediction.statistics = {s.at("steps"), s.at("rhs_evaluations"), s.at("error_test_failures"), s.at("nonlinear_iterations"),
-                                 s.at("restarts"), s.at("seconds")};
+  curve.prediction.statistics = {
+      s.at("steps"),    s.at("rhs_evaluations"), s.at("error_test_failures"), s.at("nonlinear_iterations"),
+      s.at("restarts"), s.at("seconds")};
   curve.prediction.rows = read_prediction_series(folder / curve.file);
   return curve;
 }
@@ -88,9 +92,10 @@ CurveComparison comparison_from_json(const Json& object) {
   read_head(object, entry);
   entry.comparison.test = object.at("test");
   for (const Json& q : object.at("quantities")) {
-    entry.comparison.quantities.push_back({q.at("quantity"), q.at("rows"), number_or_nan(q.at("bias")), number_or_nan(q.at("rms")),
-                                           number_or_nan(q.at("normalised_rms")), number_or_nan(q.at("largest")),
-                                           number_or_nan(q.at("largest_at_eps_dev")), number_or_nan(q.at("largest_at_nu"))});
+    entry.comparison.quantities.push_back({q.at("quantity"), q.at("rows"), number_or_nan(q.at("bias")),
+                                           number_or_nan(q.at("rms")), number_or_nan(q.at("normalised_rms")),
+                                           number_or_nan(q.at("largest")), number_or_nan(q.at("largest_at_eps_dev")),
+                                           number_or_nan(q.at("largest_at_nu"))});
   }
   return entry;
 }
@@ -148,8 +153,9 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
     write_json(folder / "comparison.json",
                {{"format", "grainlaw comparison"},
                 {"format_version", 1},
-                {"normalisation", "normalised_rms = RMS(prediction - DEM)/max|DEM|, bias = mean(prediction - DEM), rows with "
-                                  "shear_path >= 0.01 (all rows without shear); test \"mean\": mean over seeds"},
+                {"normalisation",
+                 "normalised_rms = RMS(prediction - DEM)/max|DEM|, bias = mean(prediction - DEM), rows with "
+                 "shear_path >= 0.01 (all rows without shear); test \"mean\": mean over seeds"},
                 {"dataset_digest", content.dem->digest},
                 {"comparisons", entries}});
   }
@@ -179,11 +185,12 @@ PredictionFolder read_prediction(const fs::path& folder) {
       content.dem = read_dataset(folder / "dem");
       file = folder / "comparison.json";
       const Json comparisons = read_json(file, JsonSource::own);
-      for (const Json& entry : comparisons.at("comparisons")) content.comparisons.push_back(comparison_from_json(entry));
+      for (const Json& entry : comparisons.at("comparisons"))
+        content.comparisons.push_back(comparison_from_json(entry));
     }
   } catch (const Json::exception& error) {
-    throw InvalidInput(fmt::format("{}: is not of this version: {}; run grainlaw predict again", one_line(file.string(), 200),
-                                   one_line(error.what(), 200)));
+    throw InvalidInput(fmt::format("{}: is not of this version: {}; run grainlaw predict again",
+                                   one_line(file.string(), 200), one_line(error.what(), 200)));
   }
   return content;
 }

@@ -35,12 +35,12 @@ struct CurveComparison {
 };
 
 struct PredictionFolder {
-  std::string name;                    ///< last part of the folder's path
+  std::string name;  ///< last part of the folder's path
   Path path;
   std::vector<PredictedCurve> curves;
-  std::optional<Dataset> dem;          ///< the runs in dem/
+  std::optional<Dataset> dem;  ///< the runs in dem/
   std::vector<CurveComparison> comparisons;
-  Json parameters;                     ///< file, sha256, dataset_digest of the parameters used
+  Json parameters;  ///< file, sha256, dataset_digest of the parameters used
   Json provenance;
 };
 

@@ -13,14 +13,17 @@ namespace {
 constexpr double kUnloadTo = 0.66;  // just below jamming, so that the unloading branch brackets nu_c
 
 /// The lightest sphere of the distribution, uniform on 2<r>/(w+1) [1, w].
-double smallest_radius(const dem::PackingOptions& packing) { return 2 * packing.mean_radius / (packing.size_width + 1); }
+double smallest_radius(const dem::PackingOptions& packing) {
+  return 2 * packing.mean_radius / (packing.size_width + 1);
+}
 
 double shortest_collision(const dem::PackingOptions& packing) {
   return dem::collision_time(packing.material, dem::sphere_mass(packing.material, smallest_radius(packing)) / 2);
 }
 
 std::vector<StraightSegment> isotropic(double from, double to) {
-  return resolve({from, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to < from), ExtentKind::target_nu, to}}});
+  return resolve(
+      {from, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to < from), ExtentKind::target_nu, to}}});
 }
 
 }  // namespace
@@ -82,15 +85,19 @@ double expected_steps(const dem::PreparationOptions& o, const std::vector<Straig
 
 double expected_steps(const dem::PreparationOptions& o) {
   return expected_steps(o, isotropic(o.nu_gas, o.nu_start)) / o.gas_compression_factor +
-         expected_steps(o, isotropic(o.nu_start, o.nu_max)) + expected_steps(o, isotropic(o.nu_max, o.nu_end.value_or(o.nu_start)));
+         expected_steps(o, isotropic(o.nu_start, o.nu_max)) +
+         expected_steps(o, isotropic(o.nu_max, o.nu_end.value_or(o.nu_start)));
 }
 
 void complete_preparation(dem::PreparationOptions& o, const std::string& name) {
   const auto refuse = [&](const std::string& what) { throw InvalidInput(fmt::format("{}: {}", name, what)); };
   if (!std::isfinite(shortest_collision(o.packing))) {
-    refuse(fmt::format("contact_viscosity: {} kg/s overdamps the contacts of the smallest spheres, which then never end; give less than {:.4g}",
-                       o.packing.material.contact_viscosity,
-                       std::sqrt(2 * o.packing.material.stiffness * dem::sphere_mass(o.packing.material, smallest_radius(o.packing)))));
+    refuse(
+        fmt::format("contact_viscosity: {} kg/s overdamps the contacts of the smallest spheres, which then never end; "
+                    "give less than {:.4g}",
+                    o.packing.material.contact_viscosity,
+                    std::sqrt(2 * o.packing.material.stiffness *
+                              dem::sphere_mass(o.packing.material, smallest_radius(o.packing)))));
   }
   if (!(o.nu_start < o.nu_max)) refuse(fmt::format("nu_max: {} must lie above nu_start = {}", o.nu_max, o.nu_start));
   if (!o.nu_end) {
@@ -105,17 +112,20 @@ void complete_preparation(dem::PreparationOptions& o, const std::string& name) {
   if (o.keep_loading.empty() && o.keep_unloading.empty()) o.keep_loading.push_back(o.nu_max);
   for (const double nu : o.keep_loading) {
     if (nu <= o.nu_start || nu > o.nu_max) {
-      refuse(fmt::format("densities: {} is not on the loading branch (nu_start, nu_max] = ({}, {}]", nu, o.nu_start, o.nu_max));
+      refuse(fmt::format("densities: {} is not on the loading branch (nu_start, nu_max] = ({}, {}]", nu, o.nu_start,
+                         o.nu_max));
     }
   }
   for (const double nu : o.keep_unloading) {
     if (nu < *o.nu_end || nu >= o.nu_max) {
-      refuse(fmt::format("densities: {} is not on the unloading branch [nu_end, nu_max) = [{}, {})", nu, *o.nu_end, o.nu_max));
+      refuse(fmt::format("densities: {} is not on the unloading branch [nu_end, nu_max) = [{}, {})", nu, *o.nu_end,
+                         o.nu_max));
     }
   }
   if (const double steps = expected_steps(o); !(steps <= kMaxSteps)) {
-    refuse(fmt::format("strain_rate: {} 1/s makes the preparation {:.3g} steps long, more than {:.0g}; give a larger one",
-                       o.drive.strain_rate, steps, kMaxSteps));
+    refuse(
+        fmt::format("strain_rate: {} 1/s makes the preparation {:.3g} steps long, more than {:.0g}; give a larger one",
+                    o.drive.strain_rate, steps, kMaxSteps));
   }
 }
 

@@ -66,11 +66,15 @@ std::string expected_text(const Json& s) {
   if (type == "number") return fmt::format("a number{}", range_text(s));
   if (type == "boolean") return "true or false";
   if (type == "array") {
-    const auto most = s.value("maxItems", Json::number_unsigned_t{0}), least = s.value("minItems", Json::number_unsigned_t{0});
-    const std::string count = most == 0 ? fmt::format("at least {}", least) : least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
+    const auto most = s.value("maxItems", Json::number_unsigned_t{0}),
+               least = s.value("minItems", Json::number_unsigned_t{0});
+    const std::string count = most == 0       ? fmt::format("at least {}", least)
+                              : least == most ? fmt::format("{}", least)
+                                              : fmt::format("{} to {}", least, most);
     return fmt::format("an array of {}{} elements", count, s.value("uniqueItems", false) ? " different" : "");
   }
-  if (type == "string") return s.contains("maxLength") ? fmt::format("a text of at most {} characters", s["maxLength"].dump()) : "a text";
+  if (type == "string")
+    return s.contains("maxLength") ? fmt::format("a text of at most {} characters", s["maxLength"].dump()) : "a text";
   return type == "object" ? "an object" : "";
 }
 
@@ -89,7 +93,8 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 /// The first key of `value` that the schema does not know, with a remedy; empty when all are known.
 std::string unknown_key(const Json& value, const Json& s) {
-  if (!value.is_object() || !s.contains("properties") || s.value("additionalProperties", Json(true)) != Json(false)) return "";
+  if (!value.is_object() || !s.contains("properties") || s.value("additionalProperties", Json(true)) != Json(false))
+    return "";
   for (const auto& item : value.items()) {
     if (s["properties"].contains(item.key())) continue;
     std::string nearest, all;
@@ -98,7 +103,8 @@ std::string unknown_key(const Json& value, const Json& s) {
       const std::size_t distance = item.key().size() > 64 ? 65 : edit_distance(item.key(), known.key());
       if (distance <= 2 && (nearest.empty() || distance < edit_distance(item.key(), nearest))) nearest = known.key();
     }
-    const std::string remedy = nearest.empty() ? fmt::format("known keys: {}", all) : fmt::format("did you mean '{}'?", nearest);
+    const std::string remedy =
+        nearest.empty() ? fmt::format("known keys: {}", all) : fmt::format("did you mean '{}'?", nearest);
     return fmt::format("unknown key '{}'; {}", one_line(item.key(), 60), remedy);
   }
   return "";
@@ -109,7 +115,8 @@ std::string missing_key(const Json& value, const Json& s) {
   for (const Json& key : s["required"]) {
     if (value.contains(key.get<std::string>())) continue;
     const Json& wanted = s["properties"][key.get<std::string>()];
-    return fmt::format("misses the key '{}'; give {}", key.get<std::string>(), wanted.value("description", expected_text(wanted)));
+    return fmt::format("misses the key '{}'; give {}", key.get<std::string>(),
+                       wanted.value("description", expected_text(wanted)));
   }
   return "";
 }
@@ -123,13 +130,17 @@ std::string complaint(const Json& value, const Json& s) {
                                  : value.dump(-1, ' ', false, Json::error_handler_t::replace),
                              60);
   const std::string expected = expected_text(s), description = s.value("description", "");
-  const std::string remedy = expected.empty() ? description : description.empty() ? expected : fmt::format("{} ({})", expected, description);
+  const std::string remedy = expected.empty()      ? description
+                             : description.empty() ? expected
+                                                   : fmt::format("{} ({})", expected, description);
   return fmt::format("got {}; give {}", got, remedy);
 }
 
 bool all_different(const Json& array) {
   std::set<std::string> seen;
-  return std::all_of(array.begin(), array.end(), [&](const Json& element) { return seen.insert(element.dump(-1, ' ', false, Json::error_handler_t::replace)).second; });
+  return std::all_of(array.begin(), array.end(), [&](const Json& element) {
+    return seen.insert(element.dump(-1, ' ', false, Json::error_handler_t::replace)).second;
+  });
 }
 
 /// Length and uniqueness of arrays. The library compares and reports every pair of elements: too slow for hostile input.
@@ -142,7 +153,8 @@ Violation first_array_violation(const Json& value, const Json& s) {
   for (const auto& item : value.items()) {
     const Json* next = nullptr;
     if (value.is_array() && s.contains("items")) next = &s["items"];
-    if (value.is_object() && s.contains("properties") && s["properties"].contains(item.key())) next = &s["properties"][item.key()];
+    if (value.is_object() && s.contains("properties") && s["properties"].contains(item.key()))
+      next = &s["properties"][item.key()];
     if (next == nullptr) continue;
     Violation violation = first_array_violation(item.value(), *next);
     if (!violation.found) continue;
@@ -164,8 +176,11 @@ struct Schemas {
   std::map<Schema, Json> whole, for_library;
 
   Schemas() {
-    for (const auto& [which, file] : {std::pair{Schema::spec, "spec.schema.json"}, {Schema::path, "path.schema.json"}, {Schema::test, "test.schema.json"},
-                                      {Schema::dataset, "dataset.schema.json"}, {Schema::parameters, "parameters.schema.json"}}) {
+    for (const auto& [which, file] : {std::pair{Schema::spec, "spec.schema.json"},
+                                      {Schema::path, "path.schema.json"},
+                                      {Schema::test, "test.schema.json"},
+                                      {Schema::dataset, "dataset.schema.json"},
+                                      {Schema::parameters, "parameters.schema.json"}}) {
       whole[which] = load(file);
       for_library[which] = without_unique_items(whole[which]);
     }

@@ -17,7 +17,8 @@ void set_member(Row& row, double value) {
 }
 
 template <auto member, class Row>
-void add(Columns<Row>& columns, const char* name, const char* unit, const char* symbol, const char* meaning, bool required = false) {
+void add(Columns<Row>& columns, const char* name, const char* unit, const char* symbol, const char* meaning,
+         bool required = false) {
   columns.push_back({name, unit, symbol, meaning, &get_member<member, Row>, &set_member<member, Row>, required});
 }
 
@@ -37,7 +38,8 @@ void add_tensor(Columns<Row>& columns, const std::string& name, const std::strin
   const std::string suffix = kComponentName[k];
   columns.push_back({name + "_" + suffix, unit, symbol + "_" + suffix, meaning + ", component " + suffix,
                      &get_component<member, k, Row>, &set_component<member, k, Row>, required});
-  if constexpr (k + 1 < kComponentName.size()) add_tensor<member, k + 1, Row>(columns, name, unit, symbol, meaning, required);
+  if constexpr (k + 1 < kComponentName.size())
+    add_tensor<member, k + 1, Row>(columns, name, unit, symbol, meaning, required);
 }
 
 /// Components of a deviator of the predicted state; writing keeps the tensor, reading goes back to coordinates.
@@ -56,7 +58,8 @@ void set_deviator(predict::PredictedRow& row, double value) {
   row.state.*member = deviator<double>(tensor);
 }
 template <Deviator<double> LawState<double>::*member, std::size_t k = 0>
-void add_deviator(Columns<predict::PredictedRow>& columns, const std::string& name, const std::string& symbol, const std::string& meaning) {
+void add_deviator(Columns<predict::PredictedRow>& columns, const std::string& name, const std::string& symbol,
+                  const std::string& meaning) {
   const std::string suffix = kComponentName[k];
   columns.push_back({name + "_" + suffix, "", symbol + "_" + suffix, meaning + ", component " + suffix,
                      &get_deviator<member, k>, &set_deviator<member, k>, true});
@@ -68,13 +71,16 @@ Columns<Observation> make_observation_columns() {
   Columns<O> c;
   add<&O::time>(c, "time", "s", "t", "time since the start of the test");
   add<&O::segment>(c, "segment", "", "", "index of the path's segment, from 0");
-  add_tensor<&O::strain>(c, "strain", "", "eps", "logarithmic strain since the start of the test, tension positive", true);
+  add_tensor<&O::strain>(c, "strain", "", "eps", "logarithmic strain since the start of the test, tension positive",
+                         true);
   add<&O::eps_vol>(c, "eps_vol", "", "eps_vol", "volumetric strain ln(V/V0), negative in compression");
   add<&O::eps_dev>(c, "eps_dev", "", "eps_dev", "deviatoric strain, Eq. (4)");
   add<&O::shear_path>(c, "shear_path", "", "", "integral of |d eps_dev|, grows on reversal too");
   add<&O::nu>(c, "nu", "", "nu", "volume fraction", true);
-  add_tensor<&O::stress>(c, "stress", "Pa", "sigma", "contact stress, Eq. (5), viscous forces included, compression positive", true);
-  add_tensor<&O::stress_kinetic>(c, "stress_kinetic", "Pa", "sigma_kin", "kinetic stress of the fluctuation velocities");
+  add_tensor<&O::stress>(c, "stress", "Pa", "sigma",
+                         "contact stress, Eq. (5), viscous forces included, compression positive", true);
+  add_tensor<&O::stress_kinetic>(c, "stress_kinetic", "Pa", "sigma_kin",
+                                 "kinetic stress of the fluctuation velocities");
   add<&O::P_star>(c, "P_star", "", "P*", "pressure times 2<r>/k, Eq. (7)");
   add<&O::s_dev>(c, "s_dev", "", "s_dev", "stress ratio sigma_dev/P, Eq. (8), a norm");
   add<&O::s_par>(c, "s_par", "", "s_par", "signed stress ratio along the test's first shear direction");
@@ -107,17 +113,20 @@ Columns<predict::PredictedRow> make_prediction_columns() {
   using R = predict::PredictedRow;
   Columns<R> c;
   add<&R::segment>(c, "segment", "", "", "index of the path's segment, from 0", true);
-  add_tensor<&R::strain>(c, "strain", "", "eps", "logarithmic strain since the start of the path, tension positive", true);
+  add_tensor<&R::strain>(c, "strain", "", "eps", "logarithmic strain since the start of the path, tension positive",
+                         true);
   add<&R::eps_vol>(c, "eps_vol", "", "eps_vol", "volumetric strain ln(V/V0), negative in compression", true);
   add<&R::eps_dev>(c, "eps_dev", "", "eps_dev", "deviatoric strain, Eq. (4)", true);
   add<&R::shear_path>(c, "shear_path", "", "", "integral of |d eps_dev|, grows on reversal too", true);
   add<&R::nu>(c, "nu", "", "nu", "volume fraction", true);
-  c.push_back({"P_star", "", "P*", "pressure times 2<r>/k", [](const R& r) { return r.state.P; }, [](R& r, double v) { r.state.P = v; }, true});
+  c.push_back({"P_star", "", "P*", "pressure times 2<r>/k", [](const R& r) { return r.state.P; },
+               [](R& r, double v) { r.state.P = v; }, true});
   add<&R::s_dev>(c, "s_dev", "", "s_dev", "stress ratio, a norm", true);
   add<&R::s_par>(c, "s_par", "", "s_par", "signed stress ratio along the path's first shear direction", true);
   add<&R::F_dev>(c, "F_dev", "", "F_dev", "deviatoric fabric, a norm", true);
   add<&R::F_par>(c, "F_par", "", "F_par", "signed deviatoric fabric along the path's first shear direction", true);
-  add_deviator<&LawState<double>::sigma>(c, "sigma_dev", "sigma'*", "deviatoric stress times 2<r>/k, compression positive");
+  add_deviator<&LawState<double>::sigma>(c, "sigma_dev", "sigma'*",
+                                         "deviatoric stress times 2<r>/k, compression positive");
   add_deviator<&LawState<double>::F>(c, "fabric_dev", "F'", "deviatoric fabric");
   return c;
 }

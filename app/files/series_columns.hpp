@@ -13,13 +13,13 @@ namespace grainlaw::app {
 
 template <class Row>
 struct Column {
-  std::string name;     ///< title without unit
-  std::string unit;     ///< empty: dimensionless
-  std::string symbol;   ///< the paper's symbol
-  std::string meaning;  ///< one line
-  double (*get)(const Row&);        ///< NaN: undefined
+  std::string name;           ///< title without unit
+  std::string unit;           ///< empty: dimensionless
+  std::string symbol;         ///< the paper's symbol
+  std::string meaning;        ///< one line
+  double (*get)(const Row&);  ///< NaN: undefined
   void (*set)(Row&, double);
-  bool required = false;            ///< a data set that is to be fitted must have it
+  bool required = false;  ///< a data set that is to be fitted must have it
 
   std::string title() const { return unit.empty() ? name : name + "[" + unit + "]"; }  ///< as in the header line
 };

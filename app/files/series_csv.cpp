@@ -21,7 +21,8 @@ std::string table_text(const std::vector<Row>& rows, const std::vector<Column<Ro
   for (std::size_t i = 0; i < columns.size(); ++i) text.append(i == 0 ? "" : ",").append(columns[i].title());
   text += '\n';
   for (const Row& row : rows) {
-    for (std::size_t i = 0; i < columns.size(); ++i) text.append(i == 0 ? "" : ",").append(csv_number(columns[i].get(row)));
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      text.append(i == 0 ? "" : ",").append(csv_number(columns[i].get(row)));
     text += '\n';
   }
   return text;
@@ -35,7 +36,8 @@ std::vector<const Column<Row>*> matched(const CsvReader& reader, const std::vect
     const std::string name = title.substr(0, title.find('['));
     const auto column = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
     if (column == columns.end()) {
-      reader.refuse("", fmt::format("unknown column '{}'; docs/formats.md lists the columns, remove the others", one_line(title, 60)));
+      reader.refuse("", fmt::format("unknown column '{}'; docs/formats.md lists the columns, remove the others",
+                                    one_line(title, 60)));
     }
     if (column->title() != title) {
       reader.refuse("", fmt::format("column '{}' must be in its unit: '{}'", one_line(title, 60), column->title()));
@@ -50,13 +52,17 @@ std::vector<const Column<Row>*> matched(const CsvReader& reader, const std::vect
   return found;
 }
 
-constexpr double kConsistency = 1e-3;  // relative; files of others may carry few digits, and a wrong unit or column is far off
+constexpr double kConsistency =
+    1e-3;  // relative; files of others may carry few digits, and a wrong unit or column is far off
 
 class SeriesReader {
  public:
   SeriesReader(const std::filesystem::path& file, const Path& path, const PackingInfo& packing)
-      : reader_(file), columns_(matched(reader_, observation_columns())), path_(path),
-        stress_unit_(packing.stress_unit()), N_(shear_direction(resolve(path))) {
+      : reader_(file),
+        columns_(matched(reader_, observation_columns())),
+        path_(path),
+        stress_unit_(packing.stress_unit()),
+        N_(shear_direction(resolve(path))) {
     for (const auto* column : columns_) given_.insert(column->name);
     if (path.segments.size() > 1 && !given_.contains("segment")) {
       reader_.refuse("", "misses the column 'segment': the path has several segments");
@@ -81,8 +87,11 @@ class SeriesReader {
     if (std::isnan(value) && (!may_be_undefined || column.name == "segment")) {
       reader_.refuse(column.title(), "is empty; this column needs a number in every row");
     }
-    if (column.name == "segment" && !(value >= 0 && value < static_cast<double>(std::max<std::size_t>(1, path_.segments.size())) && value == std::trunc(value))) {
-      reader_.refuse(column.title(), fmt::format("{} is no segment of the path, which has {}", value, path_.segments.size()));
+    if (column.name == "segment" &&
+        !(value >= 0 && value < static_cast<double>(std::max<std::size_t>(1, path_.segments.size())) &&
+          value == std::trunc(value))) {
+      reader_.refuse(column.title(),
+                     fmt::format("{} is no segment of the path, which has {}", value, path_.segments.size()));
     }
     column.set(row, value);
   }
@@ -92,13 +101,15 @@ class SeriesReader {
     if (!given_.contains(column)) {
       value = computed;
     } else if (!std::isnan(value) && std::abs(value - computed) > kConsistency * std::max(scale, std::abs(computed))) {
-      reader_.refuse(column, fmt::format("{} contradicts the other columns, which give {:.8g}; check units and order of columns",
-                                         value, computed));
+      reader_.refuse(
+          column, fmt::format("{} contradicts the other columns, which give {:.8g}; check units and order of columns",
+                              value, computed));
     }
   }
 
   void complete(Observation& row) {
-    if (!(row.nu > 0 && row.nu <= 0.9)) reader_.refuse("nu", fmt::format("{} is no volume fraction in (0, 0.9]", row.nu));
+    if (!(row.nu > 0 && row.nu <= 0.9))
+      reader_.refuse("nu", fmt::format("{} is no volume fraction in (0, 0.9]", row.nu));
     const bool first = rows_.empty();
     const Deviator<double> strain = deviator<double>(row.strain.tensor);
     derive("eps_vol", row.eps_vol, row.strain.tensor.trace(), 1e-3);
@@ -108,11 +119,13 @@ class SeriesReader {
     double nu = row.nu;
     derive("nu", nu, nu_0 * std::exp(-row.eps_vol), 1e-3);
     if (!given_.contains("shear_path")) {
-      row.shear_path = first ? 0 : rows_.back().shear_path + (strain - deviator<double>(rows_.back().strain.tensor)).norm();
+      row.shear_path =
+          first ? 0 : rows_.back().shear_path + (strain - deviator<double>(rows_.back().strain.tensor)).norm();
     }
     // a corner of the path may be seen twice, at the end of one segment and the start of the next
     const bool corner = !first && row.segment > rows_.back().segment && row.time == rows_.back().time;
-    if (!first && !corner && row.time <= rows_.back().time) reader_.refuse("time[s]", "does not grow from the row before");
+    if (!first && !corner && row.time <= rows_.back().time)
+      reader_.refuse("time[s]", "does not grow from the row before");
     if (!first && row.segment < rows_.back().segment) reader_.refuse("segment", "falls behind that of the row before");
 
     const double P = row.stress.tensor.trace() / 3;
@@ -131,10 +144,10 @@ class SeriesReader {
   CsvReader reader_;
   std::vector<const Column<Observation>*> columns_;
   const Path& path_;
-  double stress_unit_;      // [Pa]
+  double stress_unit_;  // [Pa]
   Deviator<double> N_;
   std::set<std::string> given_;
-  double nu_0_ = 0;         // volume fraction at zero strain
+  double nu_0_ = 0;  // volume fraction at zero strain
   std::vector<Observation> rows_;
 };
 

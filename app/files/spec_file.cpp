@@ -16,9 +16,9 @@
 namespace grainlaw::app {
 namespace {
 
-constexpr double kShearStrain = 0.3;     // steady means are taken from 0.15 on
-constexpr double kPreshear = 0.15;       // of D2-ISO, equations.md 0
-constexpr double kIsoExcursion = 0.03;   // rise of nu in D2-ISO, equations.md 0
+constexpr double kShearStrain = 0.3;    // steady means are taken from 0.15 on
+constexpr double kPreshear = 0.15;      // of D2-ISO, equations.md 0
+constexpr double kIsoExcursion = 0.03;  // rise of nu in D2-ISO, equations.md 0
 
 double default_strain(const std::string& mode) {
   if (mode == "D2" || mode == "D3") return kShearStrain;
@@ -30,29 +30,35 @@ std::vector<double> sorted(std::vector<double> values) {
   return values;
 }
 
-TestRequest test_from_json(const Json& object, const std::vector<double>& densities, const std::string& name, const std::string& place) {
+TestRequest test_from_json(const Json& object, const std::vector<double>& densities, const std::string& name,
+                           const std::string& place) {
   const auto refuse = [&](const std::string& what) { throw InvalidInput(fmt::format("{}: {}{}", name, place, what)); };
   TestRequest test;
   test.mode = object.value("mode", "");
   test.branch = branch_from_json(object);
   test.role = object["role"] == "calibration" ? Role::calibration : Role::validation;
   if (test.mode.empty() != object.contains("segments")) {
-    refuse(test.mode.empty() ? ": misses what to do; give mode or segments" : ": has mode and segments; give one of them");
+    refuse(test.mode.empty() ? ": misses what to do; give mode or segments"
+                             : ": has mode and segments; give one of them");
   }
   if (test.mode.empty()) test.segments = segments_from_json(object["segments"], name, place + ".", true);
   if (test.mode == "ISO") {
     for (const char* key : {"density", "strain"}) {
-      if (object.contains(key)) refuse(fmt::format(".{}: ISO is the preparation's own branch and takes none; remove it or give segments", key));
+      if (object.contains(key))
+        refuse(fmt::format(".{}: ISO is the preparation's own branch and takes none; remove it or give segments", key));
     }
   } else {
     const Json density = object.value("density", Json("all"));
-    test.densities = density.is_string() ? densities : density.is_array() ? sorted(density.get<std::vector<double>>())
-                                                                          : std::vector<double>{density.get<double>()};
+    test.densities = density.is_string()  ? densities
+                     : density.is_array() ? sorted(density.get<std::vector<double>>())
+                                          : std::vector<double>{density.get<double>()};
   }
-  if (object.contains("strain") && test.mode.empty()) refuse(".strain: belongs to a mode; write it into the segments' extents");
+  if (object.contains("strain") && test.mode.empty())
+    refuse(".strain: belongs to a mode; write it into the segments' extents");
   test.strain = object.value("strain", default_strain(test.mode));
   test.name = object.value("name", default_name(test));
-  if (!is_safe_name(test.name)) refuse(fmt::format(".name: '{}' is no name; use letters, digits, '.', '-', '_'", one_line(test.name, 60)));
+  if (!is_safe_name(test.name))
+    refuse(fmt::format(".name: '{}' is no name; use letters, digits, '.', '-', '_'", one_line(test.name, 60)));
   return test;
 }
 
@@ -75,7 +81,9 @@ void check_tests(const Spec& spec, const std::string& name) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < spec.tests.size(); ++i) {
     const TestRequest& test = spec.tests[i];
-    const auto refuse = [&](const std::string& what) { throw InvalidInput(fmt::format("{}: tests[{}]{}", name, i, what)); };
+    const auto refuse = [&](const std::string& what) {
+      throw InvalidInput(fmt::format("{}: tests[{}]{}", name, i, what));
+    };
     const std::vector<double> starts = test.mode == "ISO" ? std::vector<double>{0} : test.densities;
     for (const double nu : starts) {
       if (!names.insert(record_name(test, nu, 0)).second) {
@@ -84,7 +92,8 @@ void check_tests(const Spec& spec, const std::string& name) {
       if (test.mode == "ISO") continue;
       try {
         const double steps = expected_steps(spec.preparation, resolve(path_of(test, nu, spec)));
-        if (!(steps <= kMaxSteps)) refuse(fmt::format(": takes {:.3g} steps, more than {:.0g}; give a larger strain_rate", steps, kMaxSteps));
+        if (!(steps <= kMaxSteps))
+          refuse(fmt::format(": takes {:.3g} steps, more than {:.0g}; give a larger strain_rate", steps, kMaxSteps));
       } catch (const InvalidInput& error) {
         const std::string reason = error.what();
         if (reason.starts_with(name)) throw;
@@ -97,7 +106,8 @@ void check_tests(const Spec& spec, const std::string& name) {
 /// States that tests start from and that `keep` asks for.
 void collect_kept(Spec& spec) {
   std::set<double> loading, unloading(spec.keep.begin(), spec.keep.end());
-  for (const TestRequest& test : spec.tests) (test.branch == Branch::loading ? loading : unloading).insert(test.densities.begin(), test.densities.end());
+  for (const TestRequest& test : spec.tests)
+    (test.branch == Branch::loading ? loading : unloading).insert(test.densities.begin(), test.densities.end());
   spec.preparation.keep_loading.assign(loading.begin(), loading.end());
   spec.preparation.keep_unloading.assign(unloading.begin(), unloading.end());
 }
@@ -120,7 +130,8 @@ std::string default_name(const TestRequest& test) {
   if (test.mode == "ISO") return fmt::format("ISO-{}", to_string(test.branch));
   std::string name = test.mode;
   if (name.empty()) {
-    for (const PathSegment& segment : test.segments) name += fmt::format("{}{}", name.empty() ? "" : "-", to_string(segment.mode));
+    for (const PathSegment& segment : test.segments)
+      name += fmt::format("{}{}", name.empty() ? "" : "-", to_string(segment.mode));
     if (name.size() > 40) name = fmt::format("path-of-{}", test.segments.size());
   }
   return test.branch == Branch::loading ? fmt::format("{}-loading", name) : name;
@@ -135,7 +146,8 @@ std::string density_text(double nu) {
 }
 
 std::string record_name(const TestRequest& test, double nu, std::uint64_t seed) {
-  return test.mode == "ISO" ? fmt::format("{}-s{}", test.name, seed) : fmt::format("{}-{}-s{}", test.name, density_text(nu), seed);
+  return test.mode == "ISO" ? fmt::format("{}-s{}", test.name, seed)
+                            : fmt::format("{}-{}-s{}", test.name, density_text(nu), seed);
 }
 
 Path path_of(const TestRequest& test, double nu, const Spec& spec) {
@@ -151,7 +163,8 @@ Path path_of(const TestRequest& test, double nu, const Spec& spec) {
     path.segments = {iso(loading ? spec.preparation.nu_max : end, !loading)};
   } else if (test.mode == "UNI") {
     path.segments = {shear(Mode::UNI)};
-    if (test.strain == 0) path.segments = {{Mode::UNI, direction_of(Mode::UNI), ExtentKind::target_nu, spec.preparation.nu_max}};
+    if (test.strain == 0)
+      path.segments = {{Mode::UNI, direction_of(Mode::UNI), ExtentKind::target_nu, spec.preparation.nu_max}};
   } else if (test.mode == "D2") {
     path.segments = {shear(Mode::D2)};
   } else if (test.mode == "D3") {

@@ -16,20 +16,20 @@ namespace grainlaw::app {
 
 /// One entry of `tests`: the same test at several densities, on every packing.
 struct TestRequest {
-  std::string name;                    ///< label in file names
-  std::string mode;                    ///< "ISO", "UNI", "D2", "D3", "D2-ISO"; empty: `segments`
-  Branch branch = Branch::unloading;   ///< branch of the kept states, or the branch that ISO means
-  std::vector<double> densities;       ///< where the test starts; empty for ISO [-]
-  double strain = 0;                   ///< deviatoric strain to reach; 0: UNI up to nu_max, otherwise unused [-]
-  std::vector<PathSegment> segments;   ///< when `mode` is empty
+  std::string name;                   ///< label in file names
+  std::string mode;                   ///< "ISO", "UNI", "D2", "D3", "D2-ISO"; empty: `segments`
+  Branch branch = Branch::unloading;  ///< branch of the kept states, or the branch that ISO means
+  std::vector<double> densities;      ///< where the test starts; empty for ISO [-]
+  double strain = 0;                  ///< deviatoric strain to reach; 0: UNI up to nu_max, otherwise unused [-]
+  std::vector<PathSegment> segments;  ///< when `mode` is empty
   Role role = Role::calibration;
 };
 
 struct Spec {
-  dem::PreparationOptions preparation;   ///< for every seed; kept states are those that tests and `keep` ask for
+  dem::PreparationOptions preparation;  ///< for every seed; kept states are those that tests and `keep` ask for
   std::vector<std::uint64_t> seeds{1, 2};
   std::vector<double> densities{0.68, 0.70, 0.72, 0.74, 0.77, 0.80};  ///< ascending [-]
-  std::vector<double> keep;              ///< further densities of the unloading branch, for later predictions [-]
+  std::vector<double> keep;  ///< further densities of the unloading branch, for later predictions [-]
   std::vector<TestRequest> tests;
   Coupling coupling = Coupling::energy;
 };

@@ -25,7 +25,8 @@ Eigen::Matrix3d cell_from(const Json& rows) {
 Start start_from(const Json& document, const std::string& name) {
   Start start = Start::preparation;
   int given = 0;
-  for (const auto& [key, value] : {std::pair{"initial", Start::kept}, {"spheres", Start::spheres}, {"state", Start::state}}) {
+  for (const auto& [key, value] :
+       {std::pair{"initial", Start::kept}, {"spheres", Start::spheres}, {"state", Start::state}}) {
     if (!document.contains(key)) continue;
     start = value;
     ++given;
@@ -35,7 +36,8 @@ Start start_from(const Json& document, const std::string& name) {
     throw InvalidInput(fmt::format("{}: segments: start nowhere; give initial, spheres or state", name));
   }
   const auto only_with = [&](const char* key, Start wanted, const char* what) {
-    if (document.contains(key) && start != wanted) throw InvalidInput(fmt::format("{}: {}: belongs to {}; remove it", name, key, what));
+    if (document.contains(key) && start != wanted)
+      throw InvalidInput(fmt::format("{}: {}: belongs to {}; remove it", name, key, what));
   };
   only_with("cell", Start::spheres, "spheres");
   only_with("keep", Start::preparation, "a preparation without segments");
@@ -43,7 +45,8 @@ Start start_from(const Json& document, const std::string& name) {
     throw InvalidInput(fmt::format("{}: misses the key 'cell'; give three rows of three numbers [m]", name));
   }
   if (start == Start::kept && !document.contains("segments")) {
-    throw InvalidInput(fmt::format("{}: misses the key 'segments'; give the path from 'initial', or 'keep' instead of it", name));
+    throw InvalidInput(
+        fmt::format("{}: misses the key 'segments'; give the path from 'initial', or 'keep' instead of it", name));
   }
   return start;
 }
@@ -66,7 +69,8 @@ TestFile read_test(const std::filesystem::path& file) {
   }
   if (document.contains("keep")) {
     for (const Json& kept : document["keep"]) {
-      (branch_from_json(kept) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading).push_back(kept["nu"].get<double>());
+      (branch_from_json(kept) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
+          .push_back(kept["nu"].get<double>());
     }
   }
   complete_preparation(preparation, name);
@@ -80,11 +84,14 @@ TestFile read_test(const std::filesystem::path& file) {
     test.given = dem::read_state(beside("state"));
     test.given_digest = sha256_of_file(beside("state"));
   }
-  Json path{{"initial", document.value("initial", Json::object())}, {"segments", document.value("segments", Json::array())}};
+  Json path{{"initial", document.value("initial", Json::object())},
+            {"segments", document.value("segments", Json::array())}};
   if (test.given) path["initial"]["nu"] = dem::volume_fraction(test.given->packing);
   test.path = path_from_json(path, name, "", false);
   if (const double steps = expected_steps(preparation, resolve(test.path)); !(steps <= kMaxSteps)) {
-    throw InvalidInput(fmt::format("{}: strain_rate: the test would take {:.3g} steps, more than {:.0g}; give a larger one", name, steps, kMaxSteps));
+    throw InvalidInput(
+        fmt::format("{}: strain_rate: the test would take {:.3g} steps, more than {:.0g}; give a larger one", name,
+                    steps, kMaxSteps));
   }
   return test;
 }

@@ -18,8 +18,8 @@ class TemporaryFolder : public ::testing::Test {
  protected:
   TemporaryFolder() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              (std::string("grainlaw-") + info->test_suite_name() + "-" + info->name() + "-" + std::to_string(::getpid()));
+    folder_ = std::filesystem::temp_directory_path() / (std::string("grainlaw-") + info->test_suite_name() + "-" +
+                                                        info->name() + "-" + std::to_string(::getpid()));
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directory(folder_);
   }

@@ -39,15 +39,24 @@ TEST_F(CsvTable, ReadsNumbersAndEmptyFields) {
 // Hard case S3.
 TEST_F(CsvTable, RefusesHostileTextNamingRowAndColumn) {
   EXPECT_NE(refusal_of("a,b\n1,2\n3,x\n").find("row 2, column 'b': 'x' is not a finite number"), std::string::npos);
-  EXPECT_NE(refusal_of("a,b\n1,5,2\n").find("row 1: 3 fields where the header has 2"), std::string::npos);  // 1,5 for 1.5
+  EXPECT_NE(refusal_of("a,b\n1,5,2\n").find("row 1: 3 fields where the header has 2"),
+            std::string::npos);  // 1,5 for 1.5
   EXPECT_NE(refusal_of("a,b\n1\n").find("row 1: 1 fields"), std::string::npos);
   EXPECT_NE(refusal_of("a,b\n1,2\n\n3,4\n").find("row 2: 1 fields"), std::string::npos);
-  EXPECT_NE(refusal_of(std::string("a,b\n1,2\n3,\0" "4\n", 12)).find("row 2: holds a NUL byte"), std::string::npos);
+  EXPECT_NE(refusal_of(std::string("a,b\n1,2\n3,\0"
+                                   "4\n",
+                                   12))
+                .find("row 2: holds a NUL byte"),
+            std::string::npos);
   EXPECT_NE(refusal_of("a,a\n1,2\n").find("column 'a' is given twice"), std::string::npos);
   EXPECT_NE(refusal_of("").find("is empty"), std::string::npos);
-  EXPECT_NE(refusal_of("\xEF\xBB\xBF" "a,b\n1,2\n").find("byte order mark"), std::string::npos);
+  EXPECT_NE(refusal_of("\xEF\xBB\xBF"
+                       "a,b\n1,2\n")
+                .find("byte order mark"),
+            std::string::npos);
   for (const char* field : {"nan", "NaN", "inf", "-inf", "1e309", "0x10", " 1", "1 ", "1.5.2", "1_000", "--1", "+1"}) {
-    EXPECT_NE(refusal_of(std::string("a,b\n1,2\n3,") + field + "\n").find("row 2, column 'b'"), std::string::npos) << field;
+    EXPECT_NE(refusal_of(std::string("a,b\n1,2\n3,") + field + "\n").find("row 2, column 'b'"), std::string::npos)
+        << field;
   }
 }
 
@@ -64,7 +73,8 @@ TEST_F(CsvTable, StaysSmallWithHugeLinesAndManyColumns) {
   std::string columns = "a0";
   for (int i = 1; i < 100000; ++i) columns += ",a";
   EXPECT_NE(refusal_of(columns + "\n").find("more than 1000 columns"), std::string::npos);
-  EXPECT_NE(refusal_of("a,b\n" + std::string(5000, ',') + "\n").find("row 1: more than 1000 fields"), std::string::npos);
+  EXPECT_NE(refusal_of("a,b\n" + std::string(5000, ',') + "\n").find("row 1: more than 1000 fields"),
+            std::string::npos);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   EXPECT_LT(usage.ru_maxrss, 500 * 1024);  // [kB]

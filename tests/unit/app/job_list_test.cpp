@@ -26,7 +26,8 @@ TEST(JobList, RunsEveryJobOnceAndAfterWhatItNeeds) {
     std::vector<int> order;
     std::vector<Job> jobs;
     for (int i = 0; i < 20; ++i) {
-      jobs.push_back({std::to_string(i), 1, i >= 3 ? std::optional<std::size_t>(static_cast<std::size_t>(i % 3)) : std::nullopt,
+      jobs.push_back({std::to_string(i), 1,
+                      i >= 3 ? std::optional<std::size_t>(static_cast<std::size_t>(i % 3)) : std::nullopt,
                       [&, i](int, const RunControl&) {
                         const std::lock_guard lock(mutex);
                         order.push_back(i);
@@ -36,7 +37,8 @@ TEST(JobList, RunsEveryJobOnceAndAfterWhatItNeeds) {
     ASSERT_EQ(order.size(), 20u);
     std::vector<int> position(20);
     for (int k = 0; k < 20; ++k) position[static_cast<std::size_t>(order[static_cast<std::size_t>(k)])] = k;
-    for (int i = 3; i < 20; ++i) EXPECT_GT(position[static_cast<std::size_t>(i)], position[static_cast<std::size_t>(i % 3)]);
+    for (int i = 3; i < 20; ++i)
+      EXPECT_GT(position[static_cast<std::size_t>(i)], position[static_cast<std::size_t>(i % 3)]);
   }
 }
 

@@ -16,7 +16,8 @@ std::string refusal_of(const std::string& text, JsonSource source = JsonSource::
 }
 
 TEST(JsonDocument, ReadsWhatJsonAllows) {
-  const Json document = parse_json(R"( {"a": [1, -2, 2.5, true, null, "\u00e9"], "b": {"c": []}} )", "x.json", JsonSource::user);
+  const Json document =
+      parse_json(R"( {"a": [1, -2, 2.5, true, null, "\u00e9"], "b": {"c": []}} )", "x.json", JsonSource::user);
   EXPECT_EQ(document.dump(), R"({"a":[1,-2,2.5,true,null,"é"],"b":{"c":[]}})");
   EXPECT_EQ(parse_json("3", "x.json", JsonSource::user), Json(3));
 }
@@ -28,7 +29,8 @@ TEST(JsonDocument, TakesWholeNumbersOfUsersAsIntegers) {
 
 // Hard case S1.
 TEST(JsonDocument, RefusesHostileTextWithPlaceAndReason) {
-  EXPECT_NE(refusal_of(R"({"a": {"b": [1, NaN]}})").find("x.json: a.b[1]: "), std::string::npos) << refusal_of(R"({"a": {"b": [1, NaN]}})");
+  EXPECT_NE(refusal_of(R"({"a": {"b": [1, NaN]}})").find("x.json: a.b[1]: "), std::string::npos)
+      << refusal_of(R"({"a": {"b": [1, NaN]}})");
   EXPECT_NE(refusal_of(R"({"nu": 1e309})").find("x.json: nu: "), std::string::npos);
   EXPECT_EQ(refusal_of(R"({"nu": -0})"), "x.json: nu: negative zero is refused; write 0");
   EXPECT_EQ(refusal_of(R"({"nu": -0.0})"), "x.json: nu: negative zero is refused; write 0");
@@ -37,14 +39,17 @@ TEST(JsonDocument, RefusesHostileTextWithPlaceAndReason) {
   EXPECT_NE(refusal_of("\xEF\xBB\xBF{}").find("byte order mark"), std::string::npos);
   EXPECT_NE(refusal_of("{\"a\": \"\xff\"}").find("UTF-8"), std::string::npos);
   EXPECT_NE(refusal_of(std::string("{}\0", 3)).find("x.json: "), std::string::npos);
-  for (const char* broken : {"", "{", "[1,]", "{\"a\":}", "{} {}", "// c\n{}", "'a'", "01", "+1", ".5", "Infinity", "{\"a\" 1}"}) {
+  for (const char* broken :
+       {"", "{", "[1,]", "{\"a\":}", "{} {}", "// c\n{}", "'a'", "01", "+1", ".5", "Infinity", "{\"a\" 1}"}) {
     EXPECT_NE(refusal_of(broken), "accepted") << broken;
     EXPECT_EQ(refusal_of(broken).find('\n'), std::string::npos) << broken;
   }
 }
 
 TEST(JsonDocument, LimitsNestingWhileParsing) {
-  const auto nested = [](int n) { return std::string(static_cast<std::size_t>(n), '[') + std::string(static_cast<std::size_t>(n), ']'); };
+  const auto nested = [](int n) {
+    return std::string(static_cast<std::size_t>(n), '[') + std::string(static_cast<std::size_t>(n), ']');
+  };
   EXPECT_EQ(refusal_of(nested(kMaxJsonDepth)), "accepted");
   EXPECT_NE(refusal_of(nested(kMaxJsonDepth + 1)).find("nested deeper"), std::string::npos);
   const auto began = std::chrono::steady_clock::now();
@@ -99,7 +104,8 @@ TEST_F(JsonFile, IsReadBackAsWritten) {
 }
 
 TEST_F(JsonFile, IsRefusedWhenAbsentAFolderOrTooLarge) {
-  EXPECT_NE(refusal([&] { read_json(folder_ / "none.json", JsonSource::user); }).find("none.json: cannot be opened"), std::string::npos);
+  EXPECT_NE(refusal([&] { read_json(folder_ / "none.json", JsonSource::user); }).find("none.json: cannot be opened"),
+            std::string::npos);
   EXPECT_NE(refusal([&] { read_json(folder_, JsonSource::user); }).find("is a folder"), std::string::npos);
   const auto large = put("large.json", "");
   std::filesystem::resize_file(large, kMaxJsonBytes + 1);  // sparse

@@ -46,7 +46,8 @@ fit::Calibration odd_calibration() {
     *values[i] = std::nextafter(*values[i] * (1 - 1e-3 / 7), 0.0);
     c.estimates[i] = {*values[i], 0.1 / static_cast<double>(i + 3), fit::Status::fitted, i % 2 ? "a note" : ""};
     for (std::size_t j = 0; j < kParameterCount; ++j) {
-      c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = (i == j ? 1 : 0.1) / static_cast<double>(i + j + 3);
+      c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          (i == j ? 1 : 0.1) / static_cast<double>(i + j + 3);
     }
   }
   const auto drop = [&](const char* name, fit::Status status) {
@@ -110,8 +111,13 @@ TEST_F(ResultFiles, DatasetOfOthersNeedsLittle) {
   Json index = read_json(folder_ / "dataset.json", JsonSource::own);
   Json tests = Json::array();
   for (const Json& test : index["tests"]) {
-    tests.push_back({{"name", test["name"]}, {"role", test["role"]}, {"path", test["path"]},
-                     {"packing", {{"seed", test["packing"]["seed"]}, {"mean_radius", test["packing"]["mean_radius"]}, {"stiffness", test["packing"]["stiffness"]}}}});
+    tests.push_back({{"name", test["name"]},
+                     {"role", test["role"]},
+                     {"path", test["path"]},
+                     {"packing",
+                      {{"seed", test["packing"]["seed"]},
+                       {"mean_radius", test["packing"]["mean_radius"]},
+                       {"stiffness", test["packing"]["stiffness"]}}}});
   }
   write_json(folder_ / "dataset.json", {{"tests", tests}});
   const Dataset read = read_dataset(folder_);
@@ -208,22 +214,38 @@ TEST_F(ResultFiles, DoubtfulParametersAreRefused) {
     write_json(folder_ / "bad.json", OrderedJson(bad));
     return refusal([&] { read_parameters(folder_ / "bad.json"); });
   };
-  EXPECT_NE(message([](Json& j) { j["parameters"]["pressure.p0"]["value"] = nullptr; }).find("bad.json: parameters.pressure.p0.value: must be null exactly"), std::string::npos);
-  EXPECT_NE(message([](Json& j) { j["parameters"]["pressure.p0"]["value"] = -3; }).find("parameters.pressure.p0.value: -3 is outside its bounds"), std::string::npos);
-  EXPECT_NE(message([](Json& j) { j["parameters"]["pressure.p1"] = j["parameters"]["pressure.p0"]; }).find("'pressure.p1' is no parameter"), std::string::npos);
-  EXPECT_NE(message([](Json& j) { j["parameters"]["pressure.p0"]["status"] = "sure"; }).find("got \"sure\""), std::string::npos);
-  EXPECT_NE(message([](Json& j) { j["covariance"]["matrix"].erase(0); }).find("covariance.matrix: needs one row"), std::string::npos);
+  EXPECT_NE(message([](Json& j) {
+              j["parameters"]["pressure.p0"]["value"] = nullptr;
+            }).find("bad.json: parameters.pressure.p0.value: must be null exactly"),
+            std::string::npos);
+  EXPECT_NE(message([](Json& j) {
+              j["parameters"]["pressure.p0"]["value"] = -3;
+            }).find("parameters.pressure.p0.value: -3 is outside its bounds"),
+            std::string::npos);
+  EXPECT_NE(message([](Json& j) {
+              j["parameters"]["pressure.p1"] = j["parameters"]["pressure.p0"];
+            }).find("'pressure.p1' is no parameter"),
+            std::string::npos);
+  EXPECT_NE(message([](Json& j) { j["parameters"]["pressure.p0"]["status"] = "sure"; }).find("got \"sure\""),
+            std::string::npos);
+  EXPECT_NE(message([](Json& j) { j["covariance"]["matrix"].erase(0); }).find("covariance.matrix: needs one row"),
+            std::string::npos);
   EXPECT_NE(message([](Json& j) { j["ranges"]["nu"] = {0.7}; }).find("ranges.nu"), std::string::npos);
   EXPECT_NE(message([](Json& j) { j.erase("coupling"); }).find("misses the key 'coupling'"), std::string::npos);
 
   const ParametersFile read = read_parameters(folder_ / "p.json");
-  EXPECT_EQ(refusal([&] { require_parameters(read, predict::Model::evolution, "p.json"); }), "accepted");  // single coupling reads a0
+  EXPECT_EQ(refusal([&] { require_parameters(read, predict::Model::evolution, "p.json"); }),
+            "accepted");  // single coupling reads a0
   ParametersFile energy = read;
   energy.calibration.coupling = Coupling::energy;
-  EXPECT_NE(refusal([&] { require_parameters(energy, predict::Model::evolution, "p.json"); }).find("p.json: parameters.anisotropy.a2: is not identified"), std::string::npos);
+  EXPECT_NE(refusal([&] {
+              require_parameters(energy, predict::Model::evolution, "p.json");
+            }).find("p.json: parameters.anisotropy.a2: is not identified"),
+            std::string::npos);
   EXPECT_EQ(refusal([&] { require_parameters(energy, predict::Model::reduced, "p.json"); }), "accepted");
   energy.calibration.estimates[parameter_index("stress_rate.alpha")].status = fit::Status::not_identified;
-  EXPECT_NE(refusal([&] { require_parameters(energy, predict::Model::reduced, "p.json"); }).find("stress_rate.alpha"), std::string::npos);
+  EXPECT_NE(refusal([&] { require_parameters(energy, predict::Model::reduced, "p.json"); }).find("stress_rate.alpha"),
+            std::string::npos);
   energy.calibration.parameters.stress_rate.Q_c = 0;  // the exponential is gone, and its decay with it
   EXPECT_EQ(refusal([&] { require_parameters(energy, predict::Model::reduced, "p.json"); }), "accepted");
 }
@@ -245,7 +267,8 @@ TEST_F(ResultFiles, CalibrationIsReadBack) {
   EXPECT_EQ(read.shear[0].s_max.value, c.estimates[3].value);
   EXPECT_TRUE(std::isnan(read.shear[0].P_star));
   EXPECT_EQ(read.unused_tests, c.unused_tests);
-  EXPECT_NE(refusal([&] { read_calibration(put("old.json", "{}"), read); }).find("run grainlaw calibrate again"), std::string::npos);
+  EXPECT_NE(refusal([&] { read_calibration(put("old.json", "{}"), read); }).find("run grainlaw calibrate again"),
+            std::string::npos);
 }
 
 PredictionFolder small_prediction(const std::filesystem::path& folder) {
@@ -257,8 +280,11 @@ PredictionFolder small_prediction(const std::filesystem::path& folder) {
   const auto segments = resolve(test.path);
   const auto law = testing::synthetic_truth();
   for (const std::uint64_t seed : {3, 4}) {
-    PredictedCurve curve{predict::Model::evolution, Initial::measured, seed, fmt::format("evolution-measured-s{}.csv", seed), {}};
-    curve.prediction = predict::predict(curve.model, law, Coupling::energy, segments, predict::state_from_law(law, test.path.nu), predict::points_of(test), {}, {}, {});
+    PredictedCurve curve{
+        predict::Model::evolution, Initial::measured, seed, fmt::format("evolution-measured-s{}.csv", seed), {}};
+    curve.prediction =
+        predict::predict(curve.model, law, Coupling::energy, segments, predict::state_from_law(law, test.path.nu),
+                         predict::points_of(test), {}, {}, {});
     curve.prediction.warnings = {"outside"};
     content.comparisons.push_back({curve.model, curve.initial, seed, predict::compare(curve.prediction, test)});
     content.curves.push_back(curve);

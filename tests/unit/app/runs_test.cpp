@@ -26,7 +26,9 @@ dem::PreparationOptions tiny() {
   return options;
 }
 
-Path d2(double nu = 0.74) { return {nu, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.02}}}; }
+Path d2(double nu = 0.74) {
+  return {nu, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.02}}};
+}
 
 class Runs : public testing::TemporaryFolder {};
 
@@ -64,12 +66,15 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
   EXPECT_TRUE(changed([](O& o) { o.keep_unloading = {0.75}; }));
   EXPECT_TRUE(changed([](O& o) { o.rows = 21; }));
 
-  const auto test_key = [](const dem::PreparationOptions& o, const Path& path) { return run_key(test_request({o, {}, "", false}, path)); };
+  const auto test_key = [](const dem::PreparationOptions& o, const Path& path) {
+    return run_key(test_request({o, o.rows, {}, "", false}, path));
+  };
   dem::PreparationOptions more = tiny();
   more.keep_unloading = {0.72, 0.74};  // another state kept on the way changes no test
   EXPECT_EQ(test_key(more, d2()), test_key(tiny(), d2()));
+  EXPECT_NE(run_key(test_request({tiny(), 21, {}, "", false}, d2())), test_key(tiny(), d2()));
   more = tiny();
-  more.rows = 21;
+  more.packing.seed = 5;
   EXPECT_NE(test_key(more, d2()), test_key(tiny(), d2()));
   EXPECT_NE(test_key(tiny(), d2(0.75)), test_key(tiny(), d2()));
   Path longer = d2();
@@ -108,7 +113,7 @@ TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
 TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
   const RunStore store(folder_, "runs");
   ensure_preparation(store, tiny(), {});
-  TestStart start{tiny(), {}, "", false};
+  TestStart start{tiny(), 20, {}, "", false};
   const Json record = ensure_test(store, start, d2(), {});
   const fs::path series = store.folder(record.at("key")) / "series.csv";
   const auto rows = read_series(series, d2(), packing_from_record(record));
@@ -131,10 +136,12 @@ TEST_F(Runs, StoreBelongsToOneProcess) {
 }
 
 Spec tiny_spec() {
-  Spec spec = spec_from_json(parse_json(R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70, "keep": [0.76],
+  Spec spec = spec_from_json(
+      parse_json(
+          R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70, "keep": [0.76],
       "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "strain": 0.02, "role": "calibration"}, {"mode": "UNI", "strain": 0.01, "role": "validation"}]})",
-                                        "s.json", JsonSource::user),
-                             "s.json");
+          "s.json", JsonSource::user),
+      "s.json");
   return spec;
 }
 
@@ -177,7 +184,10 @@ TEST_F(Runs, OfPredictionsUseNewPackings) {
   path.seeds = {11};
   EXPECT_EQ(new_seeds(spec, path, {}, "p.json"), std::vector<std::uint64_t>{11});
   EXPECT_EQ(new_seeds(spec, path, {12, 13}, "p.json"), (std::vector<std::uint64_t>{12, 13}));
-  EXPECT_NE(refusal([&] { new_seeds(spec, path, {5, 2}, "p.json"); }).find("p.json: seeds: 2 was used for the calibration"), std::string::npos);
+  EXPECT_NE(refusal([&] {
+              new_seeds(spec, path, {5, 2}, "p.json");
+            }).find("p.json: seeds: 2 was used for the calibration"),
+            std::string::npos);
   EXPECT_NE(refusal([&] { new_seeds(spec, path, {5, 5}, "p.json"); }).find("given twice"), std::string::npos);
 
   const auto tests = plan(spec, path, {11, 12}, "p.json");
@@ -188,7 +198,13 @@ TEST_F(Runs, OfPredictionsUseNewPackings) {
   // paths that start at densities of `keep` share their preparations
   const auto a = plan(spec, {d2(0.76), {}, {}}, {11}, "p.json");
   EXPECT_EQ(a[0].preparation.keep_unloading, std::vector<double>{0.76});
-  EXPECT_NE(refusal([&] { plan(spec, {d2(0.69), {}, {}}, {11}, "p.json"); }).find("0.69 is not on the unloading branch"), std::string::npos);
+  const auto denser = plan(spec, {d2(0.76), {}, 50}, {11}, "p.json");  // other rows, the same packing
+  EXPECT_EQ(denser[0].rows, 50);
+  EXPECT_EQ(run_key(preparation_request(denser[0].preparation)), run_key(preparation_request(a[0].preparation)));
+  EXPECT_NE(refusal([&] {
+              plan(spec, {d2(0.69), {}, {}}, {11}, "p.json");
+            }).find("0.69 is not on the unloading branch"),
+            std::string::npos);
 }
 
 }  // namespace

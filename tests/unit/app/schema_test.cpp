@@ -24,25 +24,46 @@ TEST(SchemaCheck, AcceptsWhatIsDocumented) {
 
 TEST(SchemaCheck, NamesFileKeyReasonAndRemedyInOneLine) {
   EXPECT_EQ(refusal_of(R"({"particles": 1e18})"),
-            "s.json: particles: got 1000000000000000000; give an integer >= 1 and <= 10000000 (number of spheres of a packing)");
-  EXPECT_EQ(refusal_of(R"({"mean_radius": -0.001})"),
-            "s.json: mean_radius: got -0.001; give a number >= 1e-09 and <= 1000.0 (mean of the size distribution [m])");
+            "s.json: particles: got 1000000000000000000; give an integer >= 1 and <= 10000000 (number of spheres of a "
+            "packing)");
+  EXPECT_EQ(
+      refusal_of(R"({"mean_radius": -0.001})"),
+      "s.json: mean_radius: got -0.001; give a number >= 1e-09 and <= 1000.0 (mean of the size distribution [m])");
   EXPECT_EQ(refusal_of(R"({"particle": 5})"), "s.json: unknown key 'particle'; did you mean 'particles'?");
-  EXPECT_NE(refusal_of(R"({"xyzzy": 5})").find("s.json: unknown key 'xyzzy'; known keys: background_viscosity, "), std::string::npos);
+  EXPECT_NE(refusal_of(R"({"xyzzy": 5})").find("s.json: unknown key 'xyzzy'; known keys: background_viscosity, "),
+            std::string::npos);
   EXPECT_EQ(refusal_of(R"({"tests": [{"mode": "D2"}]})"),
             "s.json: tests[0]: misses the key 'role'; give calibration tests are fitted, validation tests never");
-  EXPECT_EQ(refusal_of(R"({"driving": "sine"})"), "s.json: driving: got \"sine\"; give \"cosine\" or \"constant\" (profile of the strain rate in time)");
-  EXPECT_EQ(refusal_of(R"({"seeds": [1, 1]})"), "s.json: seeds: got [1,1]; give an array of 1 to 1000 different elements (seeds of the packings, all different)");
+  EXPECT_EQ(refusal_of(R"({"driving": "sine"})"),
+            "s.json: driving: got \"sine\"; give \"cosine\" or \"constant\" (profile of the strain rate in time)");
+  EXPECT_EQ(
+      refusal_of(R"({"seeds": [1, 1]})"),
+      "s.json: seeds: got [1,1]; give an array of 1 to 1000 different elements (seeds of the packings, all different)");
   EXPECT_EQ(refusal_of("[]"), "s.json: got []; give an object (an object; every key may be left out)");
 }
 
 TEST(SchemaCheck, RefusesWrongTypesEverywhere) {
-  for (const char* text : {R"({"particles": "100"})", R"({"particles": 100.5})", R"({"particles": null})", R"({"particles": [1]})", R"({"seeds": 1})",
-                           R"({"seeds": []})", R"({"seeds": [-1]})", R"({"densities": [0.95]})", R"({"densities": ["0.7"]})", R"({"nu_max": 0.95})",
-                           R"({"time_step_fraction": 0})", R"({"time_step_fraction": 0.5})", R"({"size_width": 0.5})", R"({"stiffness": 0})",
-                           R"({"tests": {}})", R"({"tests": [{"mode": "D4", "role": "calibration"}]})", R"({"tests": [{"role": "maybe"}]})",
-                           R"({"tests": [{"mode": "D2", "density": "some", "role": "calibration"}]})", R"({"tests": [{"mode": "D2", "density": [], "role": "calibration"}]})",
-                           R"({"tests": [{"name": "../x", "mode": "D2", "role": "calibration"}]})", R"({"tests": [{"name": "a\nb", "mode": "D2", "role": "calibration"}]})",
+  for (const char* text : {R"({"particles": "100"})",
+                           R"({"particles": 100.5})",
+                           R"({"particles": null})",
+                           R"({"particles": [1]})",
+                           R"({"seeds": 1})",
+                           R"({"seeds": []})",
+                           R"({"seeds": [-1]})",
+                           R"({"densities": [0.95]})",
+                           R"({"densities": ["0.7"]})",
+                           R"({"nu_max": 0.95})",
+                           R"({"time_step_fraction": 0})",
+                           R"({"time_step_fraction": 0.5})",
+                           R"({"size_width": 0.5})",
+                           R"({"stiffness": 0})",
+                           R"({"tests": {}})",
+                           R"({"tests": [{"mode": "D4", "role": "calibration"}]})",
+                           R"({"tests": [{"role": "maybe"}]})",
+                           R"({"tests": [{"mode": "D2", "density": "some", "role": "calibration"}]})",
+                           R"({"tests": [{"mode": "D2", "density": [], "role": "calibration"}]})",
+                           R"({"tests": [{"name": "../x", "mode": "D2", "role": "calibration"}]})",
+                           R"({"tests": [{"name": "a\nb", "mode": "D2", "role": "calibration"}]})",
                            R"({"tests": [{"mode": "D2", "strain": -0.1, "role": "calibration"}]})"}) {
     const std::string message = refusal_of(text);
     EXPECT_TRUE(message.starts_with("s.json: ")) << text << " -> " << message;
@@ -71,13 +92,17 @@ void expect_described(const Json& node, const std::string& place) {
 }
 
 TEST(SchemaCheck, DescribesEveryKey) {
-  for (const Schema which : {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::parameters}) expect_described(schema(which), "");
+  for (const Schema which : {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::parameters})
+    expect_described(schema(which), "");
 }
 
 TEST(SchemaCheck, KnowsTheWordsOfTheFit) {
-  const Json& status = schema(Schema::parameters)["properties"]["parameters"]["additionalProperties"]["properties"]["status"]["enum"];
+  const Json& status =
+      schema(Schema::parameters)["properties"]["parameters"]["additionalProperties"]["properties"]["status"]["enum"];
   std::vector<std::string> words;
-  for (const auto s : {fit::Status::fitted, fit::Status::fixed, fit::Status::tied, fit::Status::at_bound, fit::Status::not_identified}) words.push_back(to_string(s));
+  for (const auto s :
+       {fit::Status::fitted, fit::Status::fixed, fit::Status::tied, fit::Status::at_bound, fit::Status::not_identified})
+    words.push_back(to_string(s));
   EXPECT_EQ(status, Json(words));
 }
 

@@ -22,7 +22,8 @@ TestRecord full_record() {
   options.densities = {0.7};
   options.rows = 20;
   TestRecord record = testing::SyntheticDataset(testing::synthetic_truth(), options).records().at(1);
-  const std::set<std::string> consistent{"segment", "eps_vol", "eps_dev", "shear_path", "nu", "P_star", "s_dev", "s_par", "F_v", "F_dev", "F_par", "time"};
+  const std::set<std::string> consistent{"segment", "eps_vol", "eps_dev", "shear_path", "nu",    "P_star",
+                                         "s_dev",   "s_par",   "F_v",     "F_dev",      "F_par", "time"};
   double value = 0.1;
   for (std::size_t i = 0; i < record.rows.size(); ++i) {
     Observation& row = record.rows[i];
@@ -38,14 +39,17 @@ class SeriesCsv : public testing::TemporaryFolder {
  protected:
   SeriesCsv() : record_(full_record()) {}
 
-  std::vector<Observation> read(const std::string& text) const { return read_series(put("s.csv", text), record_.path, record_.packing); }
+  std::vector<Observation> read(const std::string& text) const {
+    return read_series(put("s.csv", text), record_.path, record_.packing);
+  }
   std::string refusal_of(const std::string& text) const {
     const std::string message = refusal([&] { read(text); });
     const auto name = message.find("s.csv: ");
     return name == std::string::npos ? message : message.substr(name + 7);
   }
   /// The series without some columns, with rows `edit`ed.
-  std::string text_without(const std::set<std::string>& names, const std::function<void(Observation&)>& edit = {}) const {
+  std::string text_without(const std::set<std::string>& names,
+                           const std::function<void(Observation&)>& edit = {}) const {
     std::string text;
     std::vector<Observation> rows = record_.rows;
     for (int line = -1; line < static_cast<int>(rows.size()); ++line) {
@@ -53,7 +57,8 @@ class SeriesCsv : public testing::TemporaryFolder {
       if (line >= 0 && edit) edit(rows[static_cast<std::size_t>(line)]);
       for (const auto& column : observation_columns()) {
         if (names.contains(column.name)) continue;
-        text += separator + (line < 0 ? column.title() : fmt::format("{}", column.get(rows[static_cast<std::size_t>(line)])));
+        text += separator +
+                (line < 0 ? column.title() : fmt::format("{}", column.get(rows[static_cast<std::size_t>(line)])));
         separator = ",";
       }
       text += "\n";
@@ -77,7 +82,8 @@ TEST_F(SeriesCsv, IsReadBackBitForBit) {
 
 TEST_F(SeriesCsv, HeaderNamesUnits) {
   const std::string text = series_text({});
-  EXPECT_TRUE(text.starts_with("time[s],segment,strain_xx,strain_yy,strain_zz,strain_yz,strain_xz,strain_xy,eps_vol,eps_dev,"));
+  EXPECT_TRUE(
+      text.starts_with("time[s],segment,strain_xx,strain_yy,strain_zz,strain_yz,strain_xz,strain_xy,eps_vol,eps_dev,"));
   EXPECT_NE(text.find(",stress_xx[Pa],"), std::string::npos);
 }
 
@@ -103,11 +109,21 @@ TEST_F(SeriesCsv, ComputesWhatFollowsFromRequiredColumns) {
 
 // Hard cases S3 and F7: wrong units and swapped columns do not pass.
 TEST_F(SeriesCsv, RefusesContradictions) {
-  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.stress.tensor *= 1000; })).find("row 1, column 'P_star': "), std::string::npos);
-  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { std::swap(r.s_par, r.F_par); })).find("row 2, column 's_par'"), std::string::npos);
-  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.nu += r.eps_dev > 0.1 ? 0.01 : 0; })).find("column 'nu'"), std::string::npos);
-  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.time = 0; })).find("row 2, column 'time[s]': does not grow"), std::string::npos);
-  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.segment = 1; })).find("row 1, column 'segment': 1 is no segment"), std::string::npos);
+  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.stress.tensor *= 1000; }))
+                .find("row 1, column 'P_star': "),
+            std::string::npos);
+  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { std::swap(r.s_par, r.F_par); }))
+                .find("row 2, column 's_par'"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.nu += r.eps_dev > 0.1 ? 0.01 : 0; }))
+                .find("column 'nu'"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.time = 0; }))
+                .find("row 2, column 'time[s]': does not grow"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.segment = 1; }))
+                .find("row 1, column 'segment': 1 is no segment"),
+            std::string::npos);
 }
 
 TEST_F(SeriesCsv, RefusesUnknownAndMissingColumns) {
@@ -124,15 +140,19 @@ TEST_F(SeriesCsv, RefusesUnknownAndMissingColumns) {
 }
 
 TEST_F(SeriesCsv, RefusesEmptyFieldsWhereANumberIsNeeded) {
-  EXPECT_NE(refusal_of(text_without({}, [](Observation& r) { r.strain.tensor(0, 0) = NAN; })).find("column 'strain_xx'"), std::string::npos);
-  EXPECT_NE(refusal_of(text_without({}, [](Observation& r) { r.E_kin = INFINITY; })).find("row 1, column 'E_kin[J]': 'inf' is not a finite number"), std::string::npos);
+  EXPECT_NE(
+      refusal_of(text_without({}, [](Observation& r) { r.strain.tensor(0, 0) = NAN; })).find("column 'strain_xx'"),
+      std::string::npos);
+  EXPECT_NE(refusal_of(text_without({}, [](Observation& r) { r.E_kin = INFINITY; }))
+                .find("row 1, column 'E_kin[J]': 'inf' is not a finite number"),
+            std::string::npos);
 }
 
 TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
   const auto segments = resolve(record_.path);
   const auto start = predict::state_from_law(testing::synthetic_truth(), record_.path.nu);
-  const auto prediction = predict::predict(predict::Model::evolution, testing::synthetic_truth(), Coupling::energy, segments, start,
-                                           predict::uniform_points(segments, 10), {}, {}, {});
+  const auto prediction = predict::predict(predict::Model::evolution, testing::synthetic_truth(), Coupling::energy,
+                                           segments, start, predict::uniform_points(segments, 10), {}, {}, {});
   write_prediction_series(folder_ / "p.csv", prediction.rows);
   const auto rows = read_prediction_series(folder_ / "p.csv");
   ASSERT_EQ(rows.size(), prediction.rows.size());
@@ -143,7 +163,9 @@ TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
     EXPECT_LT((rows[i].state.sigma - prediction.rows[i].state.sigma).norm(), 1e-15);
     EXPECT_LT((rows[i].state.F - prediction.rows[i].state.F).norm(), 1e-15);
   }
-  EXPECT_NE(refusal([&] { read_prediction_series(put("q.csv", "segment\n0\n")); }).find("misses the column 'strain_xx'"), std::string::npos);
+  EXPECT_NE(
+      refusal([&] { read_prediction_series(put("q.csv", "segment\n0\n")); }).find("misses the column 'strain_xx'"),
+      std::string::npos);
 }
 
 }  // namespace

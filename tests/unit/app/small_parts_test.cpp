@@ -72,7 +72,8 @@ TEST_F(Files, SurviveAFailingWrite) {
 // Hard case S6.
 TEST_F(Files, KeepOutputInItsFolder) {
   for (const char* name : {"a", "UNI-0.695", "a_b.c", "0"}) EXPECT_TRUE(is_safe_name(name)) << name;
-  for (const char* name : {"", ".", "..", ".hidden", "-x", "a/b", "../x", "/etc", "a\nb", "a b", "é"}) EXPECT_FALSE(is_safe_name(name)) << name;
+  for (const char* name : {"", ".", "..", ".hidden", "-x", "a/b", "../x", "/etc", "a\nb", "a b", "é"})
+    EXPECT_FALSE(is_safe_name(name)) << name;
   EXPECT_FALSE(is_safe_name(std::string(101, 'a')));
 
   fs::create_directory(folder_ / "out");

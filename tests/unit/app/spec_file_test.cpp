@@ -29,7 +29,8 @@ TEST(SpecFile, FillsInTheDocumentedDefaults) {
 }
 
 TEST(SpecFile, ReadsEveryKey) {
-  const Spec s = spec(R"({"particles": 64, "seeds": [5], "size_width": 2, "mean_radius": 2e-3, "density": 1000, "stiffness": 1e7, "contact_viscosity": 0.5,
+  const Spec s = spec(
+      R"({"particles": 64, "seeds": [5], "size_width": 2, "mean_radius": 2e-3, "density": 1000, "stiffness": 1e7, "contact_viscosity": 0.5,
     "background_viscosity": 0.2, "time_step_fraction": 0.05, "skin": 0.2, "strain_rate": 50, "driving": "constant", "transport": "wall", "rows": 50,
     "nu_start": 0.65, "nu_max": 0.81, "nu_end": 0.66, "densities": [0.75, 0.7], "keep": [0.72], "coupling": "single", "tests": [{"mode": "D3", "role": "validation"}]})");
   const dem::PreparationOptions& p = s.preparation;
@@ -57,7 +58,10 @@ TEST(SpecFile, ReadsEveryKey) {
 }
 
 TEST(SpecFile, ResolvedFormReadsBackTheSame) {
-  for (const char* text : {"{}", R"({"densities": [0.71], "tests": [{"mode": "ISO", "branch": "loading", "role": "validation"}, {"mode": "UNI", "density": [0.7, 0.695], "role": "validation"},
+  for (
+      const char* text :
+      {"{}",
+       R"({"densities": [0.71], "tests": [{"mode": "ISO", "branch": "loading", "role": "validation"}, {"mode": "UNI", "density": [0.7, 0.695], "role": "validation"},
         {"segments": [{"mode": "D2", "axes": "yzx", "reverse": true, "extent": {"eps_dev": 0.1}}, {"rate_tensor": [[1,0,0],[0,1,0],[0,0,-2]], "extent": {"eps_dev": 0.2}}],
          "density": 0.7, "branch": "loading", "role": "calibration"}, {"mode": "ISO", "role": "calibration"}]})"}) {
     const Spec first = spec(text);
@@ -93,26 +97,46 @@ TEST(SpecFile, TestsBecomePathsAndNames) {
 }
 
 TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
-  EXPECT_EQ(refusal_of(R"({"densities": [0.85]})"), "s.json: densities: 0.85 is not on the unloading branch [nu_end, nu_max) = [0.66, 0.82)");
+  EXPECT_EQ(refusal_of(R"({"densities": [0.85]})"),
+            "s.json: densities: 0.85 is not on the unloading branch [nu_end, nu_max) = [0.66, 0.82)");
   EXPECT_EQ(refusal_of(R"({"nu_start": 0.7, "nu_max": 0.69})"), "s.json: nu_max: 0.69 must lie above nu_start = 0.7");
   EXPECT_NE(refusal_of(R"({"nu_end": 0.63})").find("s.json: nu_end: "), std::string::npos);
   EXPECT_NE(refusal_of(R"({"contact_viscosity": 1e6})").find("s.json: contact_viscosity: "), std::string::npos);
-  EXPECT_NE(refusal_of(R"({"strain_rate": 1e-6})").find("s.json: strain_rate: "), std::string::npos);  // S2: steps without end
-  EXPECT_NE(refusal_of(R"({"tests": [{"role": "calibration"}]})").find("s.json: tests[0]: misses what to do"), std::string::npos);
-  EXPECT_NE(refusal_of(R"({"tests": [{"mode": "ISO", "density": 0.7, "role": "calibration"}]})").find("s.json: tests[0].density: "), std::string::npos);
-  EXPECT_NE(refusal_of(R"({"tests": [{"mode": "D2", "role": "calibration"}, {"mode": "D2", "density": 0.7, "role": "validation"}]})").find("s.json: tests[1].name: 'D2'"),
+  EXPECT_NE(refusal_of(R"({"strain_rate": 1e-6})").find("s.json: strain_rate: "),
+            std::string::npos);  // S2: steps without end
+  EXPECT_NE(refusal_of(R"({"tests": [{"role": "calibration"}]})").find("s.json: tests[0]: misses what to do"),
             std::string::npos);
-  EXPECT_NE(refusal_of(R"({"tests": [{"segments": [{"mode": "ISO", "extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})").find("s.json: tests[0]: at nu = 0.7: segments[0].extent"),
+  EXPECT_NE(refusal_of(R"({"tests": [{"mode": "ISO", "density": 0.7, "role": "calibration"}]})")
+                .find("s.json: tests[0].density: "),
             std::string::npos);
-  EXPECT_NE(refusal_of(R"({"tests": [{"segments": [{"extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})").find("s.json: tests[0].segments[0]: misses its direction"),
-            std::string::npos);
-  EXPECT_NE(refusal_of(R"({"tests": [{"segments": [{"rate_tensor": [[1,0.5,0],[0.5,-1,0],[0,0,0]], "extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})").find("s.json: tests[0]"),
-            std::string::npos);  // the engine deforms along the axes only
-  EXPECT_EQ(refusal_of(R"({"tests": [{"mode": "D2", "density": 0.7, "role": "calibration"}, {"name": "again", "mode": "D2", "density": 0.7, "role": "validation"}]})"), "accepted");
+  EXPECT_NE(
+      refusal_of(
+          R"({"tests": [{"mode": "D2", "role": "calibration"}, {"mode": "D2", "density": 0.7, "role": "validation"}]})")
+          .find("s.json: tests[1].name: 'D2'"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal_of(
+          R"({"tests": [{"segments": [{"mode": "ISO", "extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
+          .find("s.json: tests[0]: at nu = 0.7: segments[0].extent"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal_of(R"({"tests": [{"segments": [{"extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
+          .find("s.json: tests[0].segments[0]: misses its direction"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal_of(
+          R"({"tests": [{"segments": [{"rate_tensor": [[1,0.5,0],[0.5,-1,0],[0,0,0]], "extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
+          .find("s.json: tests[0]"),
+      std::string::npos);  // the engine deforms along the axes only
+  EXPECT_EQ(
+      refusal_of(
+          R"({"tests": [{"mode": "D2", "density": 0.7, "role": "calibration"}, {"name": "again", "mode": "D2", "density": 0.7, "role": "validation"}]})"),
+      "accepted");
 }
 
 TEST(SpecFile, StepsOfAPreparationFollowFromRatesAndTheShortestCollision) {
-  Spec s = spec(R"({"driving": "constant", "strain_rate": 100, "nu_start": 0.64, "nu_max": 0.8, "nu_end": 0.7, "densities": [0.75]})");
+  Spec s = spec(
+      R"({"driving": "constant", "strain_rate": 100, "nu_start": 0.64, "nu_max": 0.8, "nu_end": 0.7, "densities": [0.75]})");
   const dem::Material& m = s.preparation.packing.material;
   // constant rate: eps_vol/rate for each branch, the gas compression gas_compression_factor times faster
   const double dt = 0.1 * dem::collision_time(m, dem::sphere_mass(m, 0.5e-3) / 2);
