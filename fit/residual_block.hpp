@@ -30,7 +30,7 @@ struct ResidualBlock {
 };
 
 /// Values and Jacobian of `functor(const T* x, T* misfit) -> bool` by forward differentiation. `Jet` is a dual number
-/// with `Jet::DIMENSION` >= `parameters` partial derivatives, Jet(value, k), .a and .v.
+/// with at least `parameters` partial derivatives: Jet(value, k), .a and .v.
 template <class Jet, class Functor>
 auto differentiated(Functor functor, int parameters, int rows) {
   return [functor = std::move(functor), parameters, rows](const double* x, double* misfit, double* jacobian) {

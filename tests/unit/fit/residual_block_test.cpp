@@ -9,7 +9,6 @@ namespace {
 
 /// a + b d with d*d = 0: the smallest dual number that differentiated() accepts.
 struct Dual {
-  static constexpr int DIMENSION = 2;
   double a = 0;
   Eigen::Vector2d v = Eigen::Vector2d::Zero();
   Dual() = default;
