@@ -54,8 +54,8 @@ quickstart() {
   local folder
   for folder in "$out"/predictions/*/; do
     jq -r --arg name "$(basename "$folder")" '.comparisons[] | select(.seed == null) as $c
-      | $c.quantities[] | "\($name).\($c.model).\(.quantity).normalised_rms \(.normalised_rms)",
-                          "\($name).\($c.model).\(.quantity).bias \(.bias)"' "$folder/comparison.json" |
+      | $c.quantities[] | "\($name).\($c.model)-\($c.initial).\(.quantity).normalised_rms \(.normalised_rms)",
+                          "\($name).\($c.model)-\($c.initial).\(.quantity).bias \(.bias)"' "$folder/comparison.json" |
       while read -r name value; do printf '%s %s\n' "$name" "$value"; done
   done >build/acceptance/predictions.txt
   while read -r name value; do figure "$name" "$value" stated; done <build/acceptance/predictions.txt
