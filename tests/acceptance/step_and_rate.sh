@@ -30,9 +30,9 @@ run() { # name time_step_fraction strain_rate
     number=$((number + 1))
     jq -n --arg state "$state" --argjson step "$2" --argjson rate "$3" '{state: $state, time_step_fraction: $step,
       strain_rate: $rate, segments: [{mode: "D2", extent: {eps_dev: 0.26}}]}' >"$work/$1-$number.json"
-    "$grainlaw" simulate "$work/$1-$number.json" -o "$work/$1-$number" --threads 1 --quiet --json >"$work/$1-$number.summary"
+    /usr/bin/time --quiet --format %e --append --output "$work/$1.seconds" \
+      "$grainlaw" simulate "$work/$1-$number.json" -o "$work/$1-$number" --threads 1 --quiet >/dev/null
     steady_means "$work/$1-$number/series.csv" >>"$work/$1.means"
-    jq .seconds "$work/$1-$number.summary" >>"$work/$1.seconds"
   done < <(find "$quickstart/runs" -name 'unloading-0.74.state' | sort)
 }
 
