@@ -39,6 +39,12 @@ std::string digest_of(const Dataset& dataset) {
   return sha256(identities.dump());
 }
 
+std::vector<std::uint64_t> seeds_of(const Dataset& dataset) {
+  std::set<std::uint64_t> seeds;
+  for (const DatasetTest& test : dataset.tests) seeds.insert(test.record.packing.seed);
+  return {seeds.begin(), seeds.end()};
+}
+
 PackingInfo packing_from(const Json& object) {
   PackingInfo packing;
   packing.seed = object["seed"];
@@ -96,9 +102,7 @@ Dataset read_dataset(const fs::path& folder) {
   if (document.contains("seeds")) {
     dataset.seeds = document["seeds"].get<std::vector<std::uint64_t>>();
   } else {
-    std::set<std::uint64_t> seeds;
-    for (const DatasetTest& test : dataset.tests) seeds.insert(test.record.packing.seed);
-    dataset.seeds.assign(seeds.begin(), seeds.end());
+    dataset.seeds = seeds_of(dataset);
   }
   dataset.digest = digest_of(dataset);
   if (document.contains("digest") && document["digest"] != dataset.digest) {
@@ -124,7 +128,8 @@ void write_dataset_index(const fs::path& folder, Dataset& dataset) {
   document["format"] = "grainlaw dataset";
   document["format_version"] = 1;
   document["digest"] = dataset.digest;
-  document["seeds"] = dataset.seeds;
+  if (dataset.seeds.empty()) dataset.seeds = seeds_of(dataset);
+  if (!dataset.seeds.empty()) document["seeds"] = dataset.seeds;
   if (!dataset.spec.is_null()) document["spec"] = OrderedJson(dataset.spec);
   if (!dataset.provenance.is_null()) document["provenance"] = OrderedJson(dataset.provenance);
   document["tests"] = tests;

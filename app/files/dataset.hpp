@@ -39,7 +39,7 @@ struct Dataset {
 Dataset read_dataset(const std::filesystem::path& folder);
 
 /// Writes dataset.json last; the CSV files must already be in `folder` (their digests are taken from there).
-/// Sets digest and the tests' sha256.
+/// Sets digest, the tests' sha256 and, when empty, seeds.
 void write_dataset_index(const std::filesystem::path& folder, Dataset& dataset);
 
 }  // namespace grainlaw::app
