@@ -56,6 +56,8 @@ struct Cvode::Impl {
   std::size_t size;
   OdeRate rate;
   OdeEvent event;
+  OdeScale scale;
+  double relative = 0, absolute = 0;  // what the solver is given
   // Destroyed in reverse order: the solver's memory first, the context last.
   Owned<SUNContext> context = create_context();
   Owned<N_Vector> y;
@@ -93,6 +95,21 @@ struct Cvode::Impl {
       return kGiveUp;
     }
     return std::isfinite(*value) ? 0 : kGiveUp;
+  }
+
+  static int evaluate_weights(N_Vector y, N_Vector weight, void* user) {
+    auto& self = *static_cast<Impl*>(user);
+    double* out = N_VGetArrayPointer(weight);
+    double t = 0;
+    CVodeGetCurrentTime(self.memory.get(), &t);
+    try {
+      self.scale(t, N_VGetArrayPointer(y), out);
+    } catch (...) {
+      self.thrown = std::current_exception();
+      return kGiveUp;
+    }
+    for (std::size_t i = 0; i < self.size; ++i) out[i] = 1 / (self.relative * out[i] + self.absolute);
+    return std::all_of(out, out + self.size, [](double v) { return v > 0 && std::isfinite(v); }) ? 0 : kGiveUp;
   }
 
   static void keep_message(int code, const char*, const char*, char* text, void* user) {
@@ -137,8 +154,12 @@ void Cvode::Impl::initialise(double t_0, const Tolerances& tolerances) {
   require(CVodeSetErrHandlerFn(cvode, keep_message, this), "CVodeSetErrHandlerFn");
   require(CVodeInit(cvode, evaluate_rate, t_0, y.get()), "CVodeInit");
   require(CVodeSetUserData(cvode, this), "CVodeSetUserData");
-  require(CVodeSStolerances(cvode, kLocalShare * tolerances.relative, kLocalShare * tolerances.absolute),
-          "CVodeSStolerances");
+  relative = kLocalShare * tolerances.relative;
+  absolute = kLocalShare * tolerances.absolute;
+  if (scale)
+    require(CVodeWFtolerances(cvode, evaluate_weights), "CVodeWFtolerances");
+  else
+    require(CVodeSStolerances(cvode, relative, absolute), "CVodeSStolerances");
   require(CVodeSetMaxNumSteps(cvode, tolerances.max_steps), "CVodeSetMaxNumSteps");
   const auto unknowns = static_cast<sunindextype>(size);
   if (tolerances.method == Method::adams) {
@@ -158,12 +179,13 @@ void Cvode::Impl::initialise(double t_0, const Tolerances& tolerances) {
   }
 }
 
-Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event)
+Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event, OdeScale scale)
     : impl_(std::make_unique<Impl>()) {
   Impl& self = *impl_;
   self.size = size;
   self.rate = std::move(rate);
   self.event = std::move(event);
+  self.scale = std::move(scale);
   self.y = own(N_VNew_Serial(static_cast<sunindextype>(size), self.context.get()), "its state vector");
   N_VConst(0, self.y.get());
   self.memory =

@@ -19,6 +19,9 @@ using OdeRate = std::function<void(double t, const double* y, double* rate)>;
 /// The integration ends where this falls through zero. May be empty.
 using OdeEvent = std::function<double(double t, const double* y)>;
 
+/// Writes for each unknown the magnitude at (t, y) that the relative tolerance refers to. May be empty: |y| then.
+using OdeScale = std::function<void(double t, const double* y, double* scale)>;
+
 /// How one call of Cvode::advance ended.
 struct Arrival {
   enum class Kind { reached, event, failed } kind = Kind::failed;
@@ -29,7 +32,7 @@ struct Arrival {
 class Cvode {
  public:
   /// `size` unknowns. Throws Error when memory runs out or an option is refused.
-  Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event = {});
+  Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event = {}, OdeScale scale = {});
   ~Cvode();
   Cvode(const Cvode&) = delete;
   Cvode& operator=(const Cvode&) = delete;

@@ -177,6 +177,47 @@ TEST(Solver, GoesOnAfterAFailureWhenStartedAnew) {
   EXPECT_EQ(solver.statistics().restarts, 2);
 }
 
+TEST(Solver, RelativeToleranceRefersToTheScaleWhereThereIsOne) {
+  // y = sin t as a small part of something of size 1e4.
+  for (const Method method : kMethods) {
+    double off[2] = {}, evaluations[2] = {};
+    for (const bool scaled : {false, true}) {
+      Cvode solver(
+          1, {1e-9, 1e-13, method}, [](double t, const double*, double* rate) { rate[0] = std::cos(t); }, {},
+          scaled ? OdeScale([](double, const double*, double* scale) { scale[0] = 1e4; }) : OdeScale{});
+      std::array<double, 1> y{0};
+      solver.start(0, y, 3.14);
+      ASSERT_EQ(solver.advance(3.14, y).kind, Arrival::Kind::reached);
+      off[scaled] = std::abs(y[0] - std::sin(3.14));
+      evaluations[scaled] = static_cast<double>(solver.statistics().rhs_evaluations);
+    }
+    EXPECT_LT(off[0], 50 * 1e-9);
+    EXPECT_LT(off[1], 50 * 1e-9 * 1e4);
+    EXPECT_GT(off[1], 50 * 1e-9) << "and not smaller than asked for";
+    EXPECT_LT(evaluations[1], 0.5 * evaluations[0]);
+  }
+}
+
+TEST(Solver, ScaleThatIsNoNumberOrZeroIsReported) {
+  for (const Method method : kMethods) {
+    for (const double bad : {kNaN, kInfinity, 0.0}) {
+      Cvode solver(
+          1, {1e-8, 0, method}, [](double, const double* y, double* rate) { rate[0] = -y[0]; }, {},
+          [&](double t, const double*, double* scale) { scale[0] = t > 0.5 ? bad : 1; });
+      std::array<double, 1> y{1};
+      solver.start(0, y, 2);
+      EXPECT_EQ(solver.advance(2, y).kind, Arrival::Kind::failed) << bad;
+      EXPECT_TRUE(std::isnan(y[0]));
+    }
+    Cvode solver(
+        1, {1e-8, 0, method}, [](double, const double* y, double* rate) { rate[0] = -y[0]; }, {},
+        [](double, const double*, double*) { throw std::runtime_error("x"); });
+    std::array<double, 1> y{1};
+    solver.start(0, y, 2);
+    EXPECT_THROW(solver.advance(2, y), std::runtime_error);
+  }
+}
+
 TEST(Solver, StatisticsCountAllStarts) {
   for (const Method method : kMethods) {
     long calls = 0;
