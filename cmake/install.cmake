@@ -1,0 +1,33 @@
+# What `cmake --install` puts below the prefix: the program, the rooms model, dem, fit and predict as libraries for
+# find_package(grainlaw), and the documentation. Nothing in it names this source tree or the prefix.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+set(installed_headers ${CMAKE_INSTALL_INCLUDEDIR}/grainlaw)  # "dem/packing.hpp" is found in there
+set(installed_package ${CMAKE_INSTALL_LIBDIR}/cmake/grainlaw)
+
+foreach(room IN ITEMS model dem fit predict)
+  set_target_properties(grainlaw_${room} PROPERTIES EXPORT_NAME ${room})
+  install(TARGETS grainlaw_${room} EXPORT grainlaw-targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    INCLUDES DESTINATION ${installed_headers})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/ DESTINATION ${installed_headers}/${room}
+    FILES_MATCHING PATTERN *.hpp)
+endforeach()
+install(EXPORT grainlaw-targets NAMESPACE grainlaw:: DESTINATION ${installed_package})
+
+list(JOIN sundials_components " " sundials_components_text)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/grainlaw-config.cmake.in
+  ${PROJECT_BINARY_DIR}/grainlaw-config.cmake INSTALL_DESTINATION ${installed_package}
+  NO_SET_AND_CHECK_MACRO)
+# Below 1.0 a minor version may change the interface.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/grainlaw-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/grainlaw-config.cmake ${PROJECT_BINARY_DIR}/grainlaw-config-version.cmake
+  DESTINATION ${installed_package})
+
+install(TARGETS grainlaw RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+
+# As in the source tree, so that links between the pages hold; the schemas of the input files are in docs/schemas.
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
