@@ -58,4 +58,9 @@ inline std::vector<Family> families() {
 
 inline std::string name_of_family(const ::testing::TestParamInfo<Family>& info) { return info.param.name; }
 
+/// Name of the figure that a hard case gives for a family: "D6.Paper", and "D20.D6.Equal" for the others.
+inline std::string figure_name(const std::string& what, const Family& family) {
+  return (family.name == "Paper" ? "" : "D20.") + what + "." + family.name;
+}
+
 }  // namespace grainlaw::dem::scene

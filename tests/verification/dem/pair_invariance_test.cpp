@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ostream>
+#include <string>
 
 #include "tests/support/dem_collision.hpp"
+#include "tests/support/figure.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -14,6 +17,7 @@ namespace {
 using scene::collide;
 using scene::Draw;
 using scene::Encounter;
+using testing::figure;
 
 Encounter oblique(double r_i, double r_j, Draw& draw) {
   Encounter encounter;
@@ -28,13 +32,26 @@ Encounter oblique(double r_i, double r_j, Draw& draw) {
   return encounter;
 }
 
-/// 2 e |ln e| dt/t_c of the pair that D1's pass lines (3.0e-3, 2e-4) are given for, at 50 steps.
+/// 2 e |ln e| dt/t_c of the pair that D1's pass lines (3.0e-3, 2e-4) are given for, at 50 steps. Errors of other pairs
+/// are judged and printed after scaling to it.
 const double kMeanPairUnit = -2 * 0.926100594751 * std::log(0.926100594751) / 50;
 
-class ObliquePair : public ::testing::TestWithParam<std::pair<double, double>> {};
+struct Pair {
+  const char* name;
+  double r_i, r_j;  ///< [m]
+};
+
+std::ostream& operator<<(std::ostream& out, const Pair& pair) { return out << pair.name; }
+
+class ObliquePair : public ::testing::TestWithParam<Pair> {
+ protected:
+  static void judge(const std::string& what, double value, double bound) {
+    figure(fmt::format("D4.{}.{}", what, GetParam().name), value, bound);
+  }
+};
 
 TEST_P(ObliquePair, D4RestitutionFollowsTheReducedMass) {
-  const auto [r_i, r_j] = GetParam();
+  const auto [name, r_i, r_j] = GetParam();
   Draw draw(11);
   double mean = 0, max = 0, change = 0;
   const int encounters = 2000;
@@ -54,48 +71,61 @@ TEST_P(ObliquePair, D4RestitutionFollowsTheReducedMass) {
     const Eigen::Vector3d slip_after = outcome.departure - outcome.departure.dot(n_hat) * n_hat;
     EXPECT_LE((slip_after - slip).norm(), 2e-4 * encounter.approach.norm()) << "no friction: slip is unchanged";
   }
-  EXPECT_LE(max, 3.0e-3 / kMeanPairUnit);
-  EXPECT_LE(std::abs(mean), 2e-4 / kMeanPairUnit);
-  EXPECT_LE(change, 1e-13) << "relative change of the total momentum in one collision";
+  judge("max", max * kMeanPairUnit, 3.0e-3);
+  judge("mean", std::abs(mean) * kMeanPairUnit, 2e-4);
+  judge("momentum_of_one_collision", change, 1e-13);
 }
 
 TEST_P(ObliquePair, D4SameInAMovingFrame) {
-  const auto [r_i, r_j] = GetParam();
+  const auto [name, r_i, r_j] = GetParam();
   Draw draw(13);
+  double worst = 0;
   for (int n = 0; n < 100; ++n) {
     Encounter encounter = oblique(r_i, r_j, draw);
     encounter.phase = draw.uniform(0.1, 0.9);  // rounding must not move the first touch into another step
     const scene::Outcome resting = collide(encounter);
     encounter.boost = draw.vector(-10, 10);
     const scene::Outcome moving = collide(encounter);
-    // Positions are rounded to 1e-18 m of overlaps of 1e-8 m, velocities to 1e-15 m/s of 0.1 m/s.
-    EXPECT_LE((moving.departure - resting.departure).norm(), 1e-8 * encounter.approach.norm());
+    worst = std::max(worst, (moving.departure - resting.departure).norm() / encounter.approach.norm());
+  }
+  // Positions are rounded to 1e-18 m of overlaps of 1e-8 m, velocities to 1e-15 m/s of 0.1 m/s.
+  judge("moving_frame", worst, 1e-8);
+}
+
+// Nearly undamped, the two go on colliding through the periodic cell.
+TEST_P(ObliquePair, D4MomentumDriftOverAMillionSteps) {
+  const auto [name, r_i, r_j] = GetParam();
+  const Material material{2000, 1e8, 0.005, 0};
+  for (const Eigen::Vector3d& boost : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(30, -40, 20)}) {
+    const double edge = 2.6 * std::max(r_i, r_j);
+    const Eigen::Vector3d x_i = edge * Eigen::Vector3d(0.25, 0.25, 0.25),
+                          x_j = edge * Eigen::Vector3d(0.75, 0.65, 0.75);
+    Simulation sim = scene::start(scene::state_of(
+        scene::cubic(edge),
+        {{r_i, x_i, boost + Eigen::Vector3d(11, 7, -13)}, {r_j, x_j, boost + Eigen::Vector3d(-5, 4, 6)}}, material));
+    const Packing& p = sim.state.packing;
+    const auto momentum = [&] {
+      return Eigen::Vector3d(p.mass[0] * scene::velocity(p, 0) + p.mass[1] * scene::velocity(p, 1));
+    };
+    const Eigen::Vector3d before = momentum();
+    const double scale = p.mass[0] * scene::velocity(p, 0).norm() + p.mass[1] * scene::velocity(p, 1).norm();
+    double drift = 0;
+    int collisions = 0;
+    bool touching = false;
+    for (int k = 0; k < 1000000; ++k) {
+      scene::advance_at_rest(sim, 1);
+      const bool touches = sim.state.sums.E_pot > 0;
+      collisions += touches && !touching ? 1 : 0;
+      touching = touches;
+      drift = std::max(drift, (momentum() - before).norm() / scale);
+    }
+    EXPECT_GT(collisions, 50);
+    judge(boost.norm() > 0 ? "drift_in_moving_frame" : "drift", drift, 1e-13);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pairs, ObliquePair, ::testing::Values(std::pair{0.5e-3, 0.5e-3}, std::pair{0.5e-3, 1.5e-3}));
-
-TEST(PairInvariance, D4MomentumDriftOverAMillionSteps) {
-  const double edge = 4e-3;
-  const Material material{2000, 1e8, 0, 0};  // undamped: the two go on colliding through the periodic cell
-  Simulation sim = scene::start(scene::state_of(
-      scene::cubic(edge), {{0.5e-3, {1e-3, 1e-3, 1e-3}, {11, 7, -13}}, {1.5e-3, {3e-3, 2.5e-3, 3e-3}, {-5, 4, 6}}},
-      material));
-  const Packing& p = sim.state.packing;
-  const auto momentum = [&] {
-    return Eigen::Vector3d(p.mass[0] * scene::velocity(p, 0) + p.mass[1] * scene::velocity(p, 1));
-  };
-  const auto scale = [&] {
-    return p.mass[0] * scene::velocity(p, 0).norm() + p.mass[1] * scene::velocity(p, 1).norm();
-  };
-  const Eigen::Vector3d before = momentum();
-  double largest = scale();
-  const Eigen::Vector3d v_start = scene::velocity(p, 0);
-  scene::advance_at_rest(sim, 1000000);
-  largest = std::max(largest, scale());
-  EXPECT_GT((scene::velocity(p, 0) - v_start).norm(), 0) << "the pair must have met";
-  EXPECT_LE((momentum() - before).norm(), 1e-13 * largest);
-}
+INSTANTIATE_TEST_SUITE_P(Pairs, ObliquePair,
+                         ::testing::Values(Pair{"0.5-0.5", 0.5e-3, 0.5e-3}, Pair{"0.5-1.5", 0.5e-3, 1.5e-3}));
 
 }  // namespace
 }  // namespace grainlaw::dem

@@ -7,6 +7,7 @@
 #include "dem/averages.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/dem_pair_list.hpp"
+#include "tests/support/figure.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -14,12 +15,13 @@ namespace {
 using scene::Draw;
 using scene::Family;
 using scene::ListFaults;
+using testing::figure;
 
 TEST(PairList, D19RandomConfigurations) {
   const ListFaults faults = scene::random_list_faults(20000, 41);
-  EXPECT_EQ(faults.missed, 0);
-  EXPECT_EQ(faults.twice, 0);
-  EXPECT_EQ(faults.invented, 0);
+  figure("D19.missed.20000", static_cast<double>(faults.missed), 0);
+  figure("D19.double.20000", static_cast<double>(faults.twice), 0);
+  figure("D19.invented.20000", static_cast<double>(faults.invented), 0);
 }
 
 class PairListOfFamily : public ::testing::TestWithParam<Family> {};
@@ -27,6 +29,7 @@ class PairListOfFamily : public ::testing::TestWithParam<Family> {};
 TEST_P(PairListOfFamily, D19D20LargerPackings) {
   Draw draw(43);
   ThreadTeam team(2);
+  long faults_of_all = 0;
   for (const double nu : {0.1, 0.7, 1.2}) {
     for (int k = 0; k < 3; ++k) {
       Family family = GetParam();
@@ -36,8 +39,10 @@ TEST_P(PairListOfFamily, D19D20LargerPackings) {
       const ListFaults faults = scene::compare(build_list(state.packing, skin, team), state.packing);
       EXPECT_EQ(faults.total(), 0) << "missed " << faults.missed << ", double " << faults.twice << ", invented "
                                    << faults.invented << " at nu " << nu;
+      faults_of_all += faults.total();
     }
   }
+  figure(scene::figure_name("D19.faults", GetParam()), static_cast<double>(faults_of_all), 0);
 }
 
 TEST_P(PairListOfFamily, SmallSpheresInAGrowingCell) {
@@ -83,11 +88,12 @@ TEST_P(PairListOfFamily, D19AlongARunThatShearsAndCollapses) {
     L.diagonal().setConstant(-shrink / sim.dt);
     return CellMotion{std::exp(-shrink * k) * F * H_0, L, Transport::homogeneous};
   };
+  long missed = 0;
   for (int k = 0; k < steps; ++k) {
     advance(sim, motion(k + 0.5), motion(k + 1));
-    if (k % 50 != 0) continue;
-    ASSERT_EQ(scene::contacts_missed(sim.list, sim.state.packing), 0) << "step " << k;
+    if (k % 50 == 0) missed += scene::contacts_missed(sim.list, sim.state.packing);
   }
+  figure(scene::figure_name("D19.missed_in_collapse", GetParam()), static_cast<double>(missed), 0);
   EXPECT_NEAR(volume_fraction(sim.state.packing), 1.2, 1e-9);
   EXPECT_GT(sim.rebuilds, 3U);
 }

@@ -9,6 +9,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "tests/support/dem_scene.hpp"
+#include "tests/support/figure.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -125,7 +126,7 @@ TEST_P(ThreeInARow, D5AgreesWithTheMatrixExponential) {
       worst = std::max(worst, std::abs(sim.state.packing.vx[i] - y(3 + static_cast<int>(i))) / kSpeed);
     }
   }
-  EXPECT_LE(worst, 5e-3);
+  testing::figure(fmt::format("D5.{:g}-{:g}-{:g}", 1e3 * row.r[0], 1e3 * row.r[1], 1e3 * row.r[2]), worst, 5e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, ThreeInARow,
@@ -137,15 +138,17 @@ TEST(ThreeInARow, D5MirrorImageBitwise) {
   State left = start_row(row, 1.5e-9, false);
   State right = start_row(row, 1.5e-9, true);
   Simulation a = scene::start(std::move(left)), b = scene::start(std::move(right));
+  int different = 0;
   for (int k = 0; k < 400; ++k) {
     scene::advance_at_rest(a, 1);
     scene::advance_at_rest(b, 1);
     for (std::size_t i = 0; i < 3; ++i) {
-      ASSERT_EQ(a.state.packing.sx[i], 1.5 - b.state.packing.sx[i]) << "sphere " << i << ", step " << k;
-      ASSERT_EQ(a.state.packing.vx[i], -b.state.packing.vx[i]) << "sphere " << i << ", step " << k;
+      different += a.state.packing.sx[i] != 1.5 - b.state.packing.sx[i] ? 1 : 0;
+      different += a.state.packing.vx[i] != -b.state.packing.vx[i] ? 1 : 0;
     }
   }
   EXPECT_LT(a.state.packing.vx[0], 0.5 * kSpeed) << "they must have met";
+  testing::figure("D5.numbers_that_differ_in_the_mirror", different, 0);
 }
 
 }  // namespace

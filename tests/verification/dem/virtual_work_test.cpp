@@ -82,7 +82,6 @@ State relaxed(const Family& family) {
 
 class VirtualWork : public ::testing::TestWithParam<Family> {
  protected:
-  bool is_paper() const { return GetParam().name == "Paper"; }
   State random_overlaps() const {
     Draw draw(17);
     return scene::state_of_family(GetParam(), 300, 0.7, draw, kNoDrag);
@@ -97,17 +96,16 @@ TEST_P(VirtualWork, D6ForcesSumToZero) {
   const Simulation sim = scene::start(state);
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < state.packing.size(); ++i) total += scene::force_on(sim, i);
-  figure(is_paper() ? "D6" : "D6." + GetParam().name, total.norm() / reference.max_force, 1e-12);
+  figure(scene::figure_name("D6", GetParam()), total.norm() / reference.max_force, 1e-12);
 }
 
 TEST_P(VirtualWork, D7StressIsTheStrainDerivativeOfTheEnergy) {
-  const std::string family = is_paper() ? "" : "." + GetParam().name;
-  figure("D7.random" + family, stress_error(random_overlaps(), 1e-5), 1e-9);
-  figure("D7.relaxed" + family, stress_error(relaxed(GetParam()), 1e-7), 1e-7);
+  figure(scene::figure_name("D7.random", GetParam()), stress_error(random_overlaps(), 1e-5), 1e-9);
+  figure(scene::figure_name("D7.relaxed", GetParam()), stress_error(relaxed(GetParam()), 1e-7), 1e-7);
 }
 
 TEST_P(VirtualWork, D8ForceIsTheGradientOfTheEnergy) {
-  figure(is_paper() ? "D8" : "D8." + GetParam().name, force_error(random_overlaps(), 1e-5, 15), 1e-8);
+  figure(scene::figure_name("D8", GetParam()), force_error(random_overlaps(), 1e-5, 15), 1e-8);
 }
 
 TEST_P(VirtualWork, EngineEqualsThePlainReference) {
@@ -151,15 +149,15 @@ INSTANTIATE_TEST_SUITE_P(D20, VirtualWork, ::testing::ValuesIn(scene::families()
 
 TEST(NewtonsThirdLaw, D6PairForcesAreOppositeToTheLastBit) {
   Draw draw(29);
+  int different = 0;
   for (int n = 0; n < 1000; ++n) {
     const Eigen::Vector3d x = draw.vector(0, 1e-2), d = 0.9e-3 * draw.vector(-1, 1);
     const Simulation sim = scene::start(scene::state_of(
         1e-2 * scene::sheared_shape(), {{1e-3, x, draw.vector(-1, 1)}, {1e-3, x + d, draw.vector(-1, 1)}}, kNoDrag));
     ASSERT_NE(scene::force_on(sim, 0).norm(), 0);
-    ASSERT_EQ(sim.force[0][0], -sim.force[1][0]);
-    ASSERT_EQ(sim.force[0][1], -sim.force[1][1]);
-    ASSERT_EQ(sim.force[0][2], -sim.force[1][2]);
+    for (std::size_t a = 0; a < 3; ++a) different += sim.force[0][a] != -sim.force[1][a] ? 1 : 0;
   }
+  figure("D6.pair_forces_not_opposite", different, 0);
 }
 
 }  // namespace
