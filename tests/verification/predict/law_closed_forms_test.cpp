@@ -11,6 +11,8 @@
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_path.hpp"
+#include "tests/support/table.hpp"
+#include "tests/support/tolerance_study.hpp"
 
 namespace grainlaw {
 namespace {
@@ -63,8 +65,14 @@ class Zigzag {
   std::vector<double> corners_;
 };
 
-/// Largest deviation of s from its closed form over s_max, and of F over F_max; starts from s_0, F_0 (in these units).
-double largest_error(const std::vector<StraightSegment>& path, int outputs, const predict::Tolerances& t,
+struct Outcome {
+  double error = std::numeric_limits<double>::infinity();
+  long rhs_evaluations = 0;
+};
+
+/// Largest deviation of s from its closed form over s_max, of F over F_max and of P over P_0; starts from s_0, F_0 (in
+/// these units).
+Outcome run_against_closed_form(const std::vector<StraightSegment>& path, int outputs, const predict::Tolerances& t,
                      double s_0 = 0, double F_0 = 0) {
   const LawParameters<double> p = uncoupled();
   const double nu = path.front().nu_start;
@@ -78,7 +86,7 @@ double largest_error(const std::vector<StraightSegment>& path, int outputs, cons
 
   const auto points = predict::uniform_points(path, outputs);
   const Prediction prediction = integrate(path, start, points, t);
-  if (prediction.rows.size() != points.size() || prediction.unjammed) return std::numeric_limits<double>::infinity();
+  if (prediction.rows.size() != points.size() || prediction.unjammed) return {};
   double largest = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& row = prediction.rows[i];
@@ -86,43 +94,35 @@ double largest_error(const std::vector<StraightSegment>& path, int outputs, cons
                         std::abs(row.F_par - F.at(points[i].segment, points[i].e)) / F_max,
                         std::abs(row.state.P / start.P - 1)});
   }
-  return largest;
+  return {largest, prediction.statistics.rhs_evaluations};
 }
 
-struct OrderStudy {
-  double largest_over_tolerance = 0;
-  double steepest = 0, flattest = 0;  // slope of log error over log tolerance, least squares, over the densities
-};
+double largest_error(const std::vector<StraightSegment>& path, int outputs, const predict::Tolerances& t,
+                     double s_0 = 0, double F_0 = 0) {
+  return run_against_closed_form(path, outputs, t, s_0, F_0).error;
+}
 
-OrderStudy study(Method method) {
-  OrderStudy result{0, -1e300, 1e300};
-  for (const double nu : kDensities) {
-    const auto path = testing::reversals(nu, 0, 1.0);
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (int k = 3; k <= 12; ++k) {
-      const double relative = std::pow(10.0, -k);
-      const double error = largest_error(path, 200, tolerances(relative, method));
-      result.largest_over_tolerance = std::max(result.largest_over_tolerance, error / relative);
-      const double lx = -k, ly = std::log10(error);
-      n += 1, x += lx, y += ly, xx += lx * lx, xy += lx * ly;
+TEST(ClosedForm, O1ErrorFollowsTheTolerance) {
+  std::vector<std::vector<std::string>> table;
+  for (const Method method : {Method::adams, Method::bdf}) {
+    const std::string name = method == Method::adams ? "adams" : "bdf";
+    testing::ToleranceStudy worst;
+    double slope_off = 0;
+    for (const double nu : kDensities) {
+      testing::ToleranceStudy study;
+      for (int k = 3; k <= 12; ++k) {
+        const double relative = std::pow(10.0, -k);
+        const Outcome run = run_against_closed_form(testing::reversals(nu, 0, 1.0), 200, tolerances(relative, method));
+        study.add(relative, run.error, run.rhs_evaluations);
+        worst.add(relative, run.error, run.rhs_evaluations);
+      }
+      slope_off = std::max(slope_off, std::abs(study.slope() - 1));
     }
-    const double slope = (n * xy - x * y) / (n * xx - x * x);
-    result.steepest = std::max(result.steepest, slope);
-    result.flattest = std::min(result.flattest, slope);
+    figure("O1." + name + "_error_over_rtol", worst.largest_over_tolerance(), method == Method::adams ? 10 : 50);
+    figure("O1." + name + "_slope_off_one", slope_off, 0.2);
+    for (auto& row : worst.rows(name)) table.push_back(std::move(row));
   }
-  return result;
-}
-
-TEST(ClosedForm, O1AdamsFollowsEquations17And18) {
-  const OrderStudy result = study(Method::adams);
-  figure("O1.adams_error_over_rtol", result.largest_over_tolerance, 10);
-  figure("O1.adams_slope_off_one", std::max(result.steepest - 1, 1 - result.flattest), 0.2);
-}
-
-TEST(ClosedForm, O1BdfFollowsEquations17And18) {
-  const OrderStudy result = study(Method::bdf);
-  figure("O1.bdf_error_over_rtol", result.largest_over_tolerance, 50);
-  figure("O1.bdf_slope_off_one", std::max(result.steepest - 1, 1 - result.flattest), 0.2);
+  testing::print_table("O1.cvode", testing::ToleranceStudy::header(), table);
 }
 
 TEST(ClosedForm, O6Reversals) {
