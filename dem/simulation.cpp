@@ -100,6 +100,24 @@ void first_forces(Simulation& sim, const CellMotion& motion) {
   });
 }
 
+/// Refuses a sphere that would be thrown out of another one. Deep overlaps in equilibrium, of a tiny sphere caught
+/// between large ones, may stay.
+void refuse_deep_overlaps(const Simulation& sim, const CellMotion& motion) {
+  const Packing& p = sim.state.packing;
+  const std::vector<Eigen::Vector3d> shift = image_shifts(sim);
+  const ForceField field = force_field(sim, motion, shift);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Row &f = sim.force[i], &f_v = sim.viscous[i];
+    const double net = std::hypot(f[0] - f_v[0], f[1] - f_v[1], f[2] - f_v[2]);  // of the elastic forces
+    visit_contacts<false>(field, i, [&](const Contact& c) {
+      if (p.radius[c.j] < p.radius[i] || c.delta <= p.radius[i] || net <= 0.5 * field.stiffness * c.delta) return;
+      throw InvalidInput(fmt::format(
+          "spheres {} and {} overlap by {:.3g} m, more than the smaller radius, and nothing holds them; move one of them",
+          p.id[i], p.id[c.j], c.delta));
+    });
+  }
+}
+
 /// First half of a step for the spheres of a block: half kick, drift, prediction of the velocity. Returns the largest
 /// squared distance that one of them has moved against the cell since the rebuild of the list.
 double kick_and_drift(Simulation& sim, const CellMotion& half, const Eigen::Matrix3d& drift, const Eigen::Matrix3d& carry,
@@ -196,6 +214,7 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
   } else {
     rebuild(sim);
     first_forces(sim, motion);
+    if (options.refuse_deep_overlaps) refuse_deep_overlaps(sim, motion);
   }
   return sim;
 }

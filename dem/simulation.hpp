@@ -18,6 +18,7 @@ struct EngineOptions {
   double time_step_fraction = 0.1;  ///< dt/t_c,min of the actual packing [-]
   double skin = 0.3;                ///< skin of the neighbour list over the mean radius [-]
   int threads = 1;                  ///< threads of one run
+  bool refuse_deep_overlaps = true; ///< of pairs that nothing holds; false to watch them part (hard case D17)
 };
 
 /// What moves with the cell.
@@ -50,7 +51,8 @@ inline constexpr double kMaxTimeStepFraction = 0.4;
 
 /// Chooses dt = time_step_fraction * t_c,min, builds the list and, for a state without accelerations, the forces for
 /// `motion` (whose H is the state's). Throws InvalidInput when dt is not positive and finite (its size is judged by
-/// those who start runs), the state does not pass check(), or two touching spheres share one position (ids are named).
+/// those who start runs), the state does not pass check(), two touching spheres share one position, or one lies deep in
+/// another (overlap above the smaller radius) with nothing to balance half the force of that contact (ids are named).
 Simulation start_simulation(State state, const EngineOptions& options, const CellMotion& motion);
 
 /// One step of length dt: the cell goes from where it is to `half` (at dt/2) and `end` (at dt). Throws Error naming the

@@ -92,7 +92,7 @@ inline CellMotion at_rest(const State& state) {
   return {state.packing.H, Eigen::Matrix3d::Zero(), Transport::homogeneous};
 }
 
-/// The state made ready in a cell at rest. The forces are made anew.
+/// The state made ready in a cell at rest, whatever its overlaps. The forces are made anew.
 inline Simulation start(State state, double time_step_fraction = 0.02, int threads = 1) {
   state.ax.clear(), state.ay.clear(), state.az.clear();
   state.ref_x.clear(), state.ref_y.clear(), state.ref_z.clear();
@@ -100,6 +100,7 @@ inline Simulation start(State state, double time_step_fraction = 0.02, int threa
   EngineOptions options;
   options.time_step_fraction = time_step_fraction;
   options.threads = threads;
+  options.refuse_deep_overlaps = false;
   return start_simulation(std::move(state), options, motion);
 }
 

@@ -117,7 +117,9 @@ TEST_P(VirtualWork, EngineEqualsThePlainReference) {
     CellMotion motion = scene::at_rest(state);
     motion.transport = transport;
     motion.L << -120, 70, 40, 0, 90, -60, 0, 0, -30;
-    const Simulation sim = start_simulation(state, EngineOptions{}, motion);
+    EngineOptions options;
+    options.refuse_deep_overlaps = false;
+    const Simulation sim = start_simulation(state, options, motion);
     const Observation seen = observe(sim, motion, Deviator<double>::Zero());
     const ReferenceSums expected = reference_sums(sim.state.packing, state.material, motion);
     const double V = state.packing.volume();
