@@ -28,6 +28,9 @@ hard_cases() {
   figures_of_tests $bin/verification_predict '*.O1*:*.O6*' O1.adams O1.bdf O6.adams O6.bdf
   figures_of_tests $bin/verification_fit '*F5*' F5
   figures_of_tests $bin/unit_app '*F12*' F12
+  if command -v lmp >/dev/null; then
+    figures_of_tests $bin/referee '*' LAMMPS.force_error LAMMPS.stress_error LAMMPS.fabric_error LAMMPS.P_star LAMMPS.C_star LAMMPS.s_par
+  fi
 }
 
 # Largest relative difference between our curve and the published one where the density lies in [from, to].
