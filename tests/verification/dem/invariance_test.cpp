@@ -1,30 +1,23 @@
-// What must not matter: the number of threads (same bits), a uniform velocity (Galilei), the order of the spheres'
-// names, a restart from a copied state (same bits), the skin of the list.
+// What must not matter: a uniform velocity (Galilei), the order of the spheres' names, a restart from a copied state (same
+// bits), the skin of the list. The number of threads is in threads_test.cpp.
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 #include "dem/averages.hpp"
 #include "dem/relax.hpp"
 #include "tests/support/dem_families.hpp"
+#include "tests/support/dem_state_bits.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
+using scene::bits_of;
 using scene::Draw;
 
 constexpr double kSpeed = 2;  // m/s
-
-/// A dense packing of three blocks of spheres that bursts: deep overlaps, many contacts made and lost, many rebuilds.
-State bursting_packing() {
-  Draw draw(61);
-  State state = scene::random_state(600, 3, 0.7, Eigen::Matrix3d::Identity(), draw);
-  scene::random_velocities(state.packing, kSpeed, draw);
-  return state;
-}
 
 /// A shaken, jammed packing: its motion does not amplify rounding much within some hundred steps.
 State shaken_packing(const Material& material = {}) {
@@ -48,51 +41,8 @@ void advance_along(Simulation& sim, const Drive& drive, int from, int to) {
     advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
 }
 
-/// Every bit that the state's future depends on.
-std::vector<std::uint64_t> bits_of(const State& state) {
-  std::vector<std::uint64_t> bits;
-  const Packing& p = state.packing;
-  for (const auto* a : {&p.radius, &p.mass, &p.sx, &p.sy, &p.sz, &p.vx, &p.vy, &p.vz, &state.ax, &state.ay, &state.az,
-                        &state.ref_x, &state.ref_y, &state.ref_z}) {
-    for (const double x : *a) bits.push_back(std::bit_cast<std::uint64_t>(x));
-  }
-  const Ledger& l = state.ledger;
-  const PassSums& s = state.sums;
-  for (const double x : {l.W_box, l.D_contact, l.D_background, l.E_start, l.E_kin_start, s.box_power, s.contact_power,
-                         s.E_pot, s.drag_power, state.time}) {
-    bits.push_back(std::bit_cast<std::uint64_t>(x));
-  }
-  for (const double x : p.H.reshaped()) bits.push_back(std::bit_cast<std::uint64_t>(x));
-  for (const double x : state.ref_H.reshaped()) bits.push_back(std::bit_cast<std::uint64_t>(x));
-  bits.push_back(state.step);
-  return bits;
-}
-
-Simulation run_with_threads(int threads) {
-  const State state = bursting_packing();
-  Simulation sim = scene::start(state, 0.1, threads);
-  open_ledger(sim);
-  advance_along(sim, uniaxial(state), 0, 300);
-  return sim;
-}
-
-TEST(Invariance, SameBitsForAnyNumberOfThreads) {
-  const Simulation one = run_with_threads(1);
-  ASSERT_GT(one.rebuilds, 1U) << "the list must have been rebuilt on the way";
-  const Observation seen = observe(one, scene::at_rest(one.state), Deviator<double>::Zero());
-  for (const int threads : {2, 3, 4, 8}) {
-    const Simulation many = run_with_threads(threads);
-    EXPECT_TRUE(bits_of(many.state) == bits_of(one.state)) << threads << " threads";
-    const Observation seen_too = observe(many, scene::at_rest(many.state), Deviator<double>::Zero());
-    EXPECT_EQ(seen.stress.tensor, seen_too.stress.tensor);
-    EXPECT_EQ(seen.fabric.tensor, seen_too.fabric.tensor);
-    EXPECT_EQ(seen.mean_overlap, seen_too.mean_overlap);
-    EXPECT_EQ(seen.E_pot, seen_too.E_pot);
-  }
-}
-
 TEST(Invariance, SameBitsWhenContinuedFromACopy) {
-  const State state = bursting_packing();
+  const State state = scene::bursting_packing(600);
   const Drive drive = uniaxial(state);
   Simulation whole = scene::start(state, 0.1);
   open_ledger(whole);
