@@ -14,6 +14,7 @@ captions=(
   "D1.damped|Restitution of a head-on pair (r = 1 mm, gamma = 1 kg/s) over 2000 random phases, t_c/dt within 1/2 around the value and never whole: order 1, because the viscous force jumps when a contact begins and ends."
   "D1.damped_smallest|The same for the paper's smallest pair (r = 0.5 mm), which is damped more."
   "D1.undamped|The same without damping (r = 1 mm): no jump, order 2."
+  "D1.closed|Two damped contacts that never open (r = 1 mm, gamma = 1 kg/s) over three periods: no jump, so order 2 with damping too."
   "D2.trap|The trap: with t_c/dt whole, the errors at both ends of a contact cancel (phases 0.1 to 0.9), and a study would report order 2 where it is 1."
   "D9.order|Residual of the energy balance over the dissipation of eight shaken, jammed packings (N = 100, nu = 0.75) compressed by 1 %: order 2."
   "O1.cvode|Eqs. 17 and 18 by CVODE against the closed form: error against the tolerance asked for."

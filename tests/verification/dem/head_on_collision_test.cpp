@@ -118,6 +118,41 @@ TEST(HeadOnCollision, D1OrderOneWithDampingTwoWithout) {
   figure("D1.undamped.order_off_two", std::abs(order_table("D1.undamped", 1e-3, 0) - 2), 0.2);
 }
 
+/// Largest error of the relative motion over its amplitude, of two spheres that touch each other on both sides through
+/// the periodic cell and never part: m_12 u'' = -2 k u - 2 gamma u',  u(t) = A exp(-eta t) cos(omega t + phase).
+double closed_contact_error(double steps_per_period) {
+  const double r = 1e-3, edge = 4 * r * 0.98, speed = 0.5;
+  const Material material{2000, 1e8, 1, 0};
+  const double m_12 = sphere_mass(material, r) / 2, eta = 1 / m_12, omega = std::sqrt(2e8 / m_12 - eta * eta);
+  Simulation sim = scene::start(scene::state_of(
+      Eigen::Vector3d(edge, 20e-3, 20e-3).asDiagonal(),
+      {{r, {edge / 4, 9e-3, 9e-3}, {speed / 2, 0, 0}}, {r, {3 * edge / 4, 9e-3, 9e-3}, {-speed / 2, 0, 0}}}, material));
+  sim.dt = 2 * std::numbers::pi / omega / steps_per_period;
+  const Packing& p = sim.state.packing;
+  double error = 0;
+  for (int k = 1; k <= 3 * steps_per_period; ++k) {
+    scene::advance_at_rest(sim, 1);
+    const double t = k * sim.dt;
+    const double u = (p.sx[0] - p.sx[1] + 0.5) * edge, exact = speed / omega * std::exp(-eta * t) * std::sin(omega * t);
+    error = std::max(error, std::abs(u - exact) / (speed / omega));
+  }
+  return error;
+}
+
+TEST(ClosedContact, D1OrderTwoWithDampingAndWithoutJump) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<double> errors;
+  for (const double steps : {50.5, 100.5, 200.5, 400.5}) {
+    errors.push_back(closed_contact_error(steps));
+    const double order = errors.size() < 2 ? 0 : std::log2(errors.end()[-2] / errors.back());
+    rows.push_back({fmt::format("{}", steps), fmt::format("{:.2e}", errors.back()),
+                    errors.size() < 2 ? "" : fmt::format("{:.2f}", order)});
+  }
+  testing::print_table("D1.closed", {"period/dt", "max error of position over amplitude", "order"}, rows);
+  figure("D1.closed.order_off_two", std::abs(std::log2(errors.front() / errors.back()) / std::log2(400.5 / 50.5) - 2),
+         0.05);
+}
+
 // With t_c/dt whole a contact begins and ends at the same phase of a step and the two errors cancel, except at phases
 // near 0 and 1, where the end slips into another step. A study of dt there would see order 2 where the order is 1.
 TEST(HeadOnCollision, D2WholeStepsPerCollisionHideTheError) {
