@@ -10,6 +10,7 @@
 #include "fit/density_fit.hpp"
 #include "fit/density_law_fit.hpp"
 #include "fit/evolution_fit.hpp"
+#include "fit/outliers.hpp"
 #include "fit/shear_fit.hpp"
 
 namespace grainlaw::fit {
@@ -140,6 +141,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   calibration.parameters = start_parameters();
   calibration.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
   calibration.unused_tests = data.unused;
+  calibration.warnings = outlier_warnings(data, options);
   calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c, kNoError, Status::fixed,
                                                           "degenerate with Q_c and alpha of Eq. (20)"};
   fit_isotropic(data, calibration, options, control);

@@ -28,6 +28,7 @@ struct Calibration {
   std::vector<Stage> stages;                        ///< in order of computation
   std::vector<ShearFit> shear;                      ///< in the order of the tests
   std::vector<std::string> unused_tests;            ///< calibration tests that no stage reads, e.g. ISO loading
+  std::vector<std::string> warnings;                ///< about the data, e.g. rows that stand out (outliers.hpp)
   double nu_min = 0, nu_max = 0;                    ///< range of volume fraction of the rows that entered [-]
   double eps_dev_max = 0, eps_vol_max = 0;          ///< largest |strain| of the calibration tests that entered [-]
   bool converged = false;                           ///< all stages

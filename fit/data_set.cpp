@@ -3,48 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
 
+#include "fit/row_checks.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kConsistency = 1e-6;  // relative; what two columns of one row may differ by through rounding in a file
-
 [[noreturn]] void refuse(const TestRecord& test, const std::string& why) {
   throw InvalidInput(fmt::format("test {}: {}", test.name, why));
-}
-
-void check_row(const TestRecord& test, std::size_t number) {
-  const Observation& row = test.rows[number];
-  const auto finite = [&](double value, const std::string& column) {
-    if (!std::isfinite(value)) {
-      refuse(test, fmt::format("row {}, column {} is {}; remove the row or repeat the test", number, column, value));
-    }
-  };
-  for (std::size_t c = 0; c < kComponentIndex.size(); ++c) {
-    const auto [i, j] = kComponentIndex[c];
-    finite(row.strain.tensor(i, j), std::string("strain_") + kComponentName[c]);
-    finite(row.stress.tensor(i, j), std::string("stress_") + kComponentName[c]);
-    finite(row.fabric.tensor(i, j), std::string("fabric_") + kComponentName[c]);
-  }
-  finite(row.nu, "nu");
-  finite(row.P_star, "P_star");
-  if (!(row.nu > 0)) refuse(test, fmt::format("row {}, column nu is {}; it must be positive", number, row.nu));
-
-  const auto agree = [&](double stated, double computed, const char* column, const char* source) {
-    if (std::abs(stated - computed) > kConsistency * std::max(std::abs(stated), std::abs(computed))) {
-      refuse(test, fmt::format("row {}, column {} is {:.9g} but {} gives {:.9g}; columns swapped or units changed?",
-                               number, column, stated, source, computed));
-    }
-  };
-  agree(row.P_star, row.stress.tensor.trace() / 3 / test.packing.stress_unit(), "P_star", "the stress");
-  const Observation& first = test.rows.front();
-  const double eps_vol = row.strain.tensor.trace() - first.strain.tensor.trace();
-  agree(row.nu, first.nu * std::exp(-eps_vol), "nu", "the strain");
-  if (!std::isnan(row.F_v)) agree(row.F_v, row.fabric.tensor.trace(), "F_v", "the fabric");
 }
 
 void check_test(const TestRecord& test) {
@@ -57,21 +28,44 @@ void check_test(const TestRecord& test) {
     refuse(test, fmt::format("mean_radius {} and stiffness {} must be positive", test.packing.mean_radius,
                              test.packing.stiffness));
   }
-  for (std::size_t i = 0; i < test.rows.size(); ++i) check_row(test, i);
-  const int last = static_cast<int>(test.path.segments.size()) - 1;
-  for (std::size_t i = 0; i < test.rows.size(); ++i) {
-    const int segment = test.rows[i].segment;
-    if (segment < (i == 0 ? 0 : test.rows[i - 1].segment) || segment > last) {
-      refuse(test, fmt::format("row {}, column segment is {}; it must grow from 0 to {}", i, segment, last));
-    }
-  }
+  check_rows(test);
 }
 
 bool same_series(const TestRecord& a, const TestRecord& b) {
-  return a.rows.size() == b.rows.size() && a.rows.back().P_star != 0 &&  // unjammed tests may well agree
+  const auto carries = [](const Observation& row) { return row.P_star != 0; };  // unjammed tests may well agree
+  return a.rows.size() == b.rows.size() && std::any_of(a.rows.begin(), a.rows.end(), carries) &&
          std::equal(a.rows.begin(), a.rows.end(), b.rows.begin(), [](const Observation& x, const Observation& y) {
            return x.stress.tensor == y.stress.tensor && x.strain.tensor == y.strain.tensor;
          });
+}
+
+/// Six doubles that no two packings have in common by chance.
+using StressKey = std::array<double, 6>;
+struct Place {
+  const TestRecord* test;
+  std::size_t row;
+};
+
+StressKey key_of(const Observation& row) {
+  StressKey key;
+  for (std::size_t c = 0; c < kComponentIndex.size(); ++c) {
+    key[c] = row.stress.tensor(kComponentIndex[c][0], kComponentIndex[c][1]);
+  }
+  return key;
+}
+
+/// Refuses rows that stand in runs of two packings. Runs of one packing may well go the same way for a while.
+void check_independence(const TestRecord& test, std::map<StressKey, Place>& seen) {
+  for (std::size_t i = 0; i < test.rows.size(); ++i) {
+    if (!(test.rows[i].P_star > 0)) continue;
+    const auto [at, fresh] = seen.try_emplace(key_of(test.rows[i]), Place{&test, i});
+    const TestRecord& other = *at->second.test;
+    if (fresh || test.packing.seed == other.packing.seed) continue;
+    refuse(test,
+           fmt::format("row {} has the stress of row {} of test {} to the last digit, although their seeds differ; "
+                       "counting one run twice would make the errors too small, leave one out",
+                       i, at->second.row, other.name));
+  }
 }
 
 bool shears(const TestRecord& test) {
@@ -92,6 +86,7 @@ std::vector<const TestRecord*> DataSet::all_used() const {
 DataSet check_and_sort(const std::vector<TestRecord>& tests) {
   DataSet data;
   std::set<std::string> names;
+  std::map<StressKey, Place> seen;
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const TestRecord& test = tests[i];
     check_test(test);
@@ -101,6 +96,7 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests) {
         refuse(test, "holds the same series as test " + tests[j].name + "; counting it twice would halve the errors");
       }
     }
+    check_independence(test, seen);
     if (is_isotropic_unloading(test))
       data.isotropic.push_back(&test);
     else if (is_pure_shear(test))

@@ -18,9 +18,8 @@ struct DataSet {
 };
 
 /// Points into `tests`. Throws InvalidInput naming test, row and column, with the remedy, for: a validation test, no
-/// rows, a name given twice, one series under two names, a packing without size or stiffness; strain, nu, stress, P_star
-/// or fabric not finite; P_star that is not 2<r>/k of the mean stress, nu that does not follow the strain, F_v that is not
-/// the trace of the fabric (columns swapped, units changed); no ISO unloading or no shear at constant volume.
+/// rows, a name given twice, one series under two names, one row in tests of two seeds, a packing without size or
+/// stiffness; rows that contradict themselves or the path (row_checks.hpp); no ISO unloading or no shear at constant volume.
 DataSet check_and_sort(const std::vector<TestRecord>& tests);
 
 /// Independent of one another are runs from different kept states: one number per (seed, branch, nu at the start).

@@ -119,6 +119,7 @@ ExitCode fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& opt
     if (!stage.converged)
       session.progress.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
   }
+  for (const std::string& warning : calibration.warnings) session.progress.log("warning: " + warning);
   print_result(summary_of(output, dataset, calibration.converged, counts, session));
   return calibration.converged ? ExitCode::ok : ExitCode::not_converged;
 }

@@ -145,6 +145,7 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
   for (const fit::ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
   document["curves"] = curves_to_json(calibration);
   document["unused_tests"] = calibration.unused_tests;
+  document["warnings"] = calibration.warnings;
   document["provenance"] = provenance;
   write_json(file, document);
 }
@@ -155,6 +156,7 @@ void read_calibration(const std::filesystem::path& file, fit::Calibration& calib
     for (const Json& stage : document.at("stages")) calibration.stages.push_back(stage_from_json(stage));
     for (const Json& shear : document.at("shear")) calibration.shear.push_back(shear_from_json(shear));
     calibration.unused_tests = document.at("unused_tests").get<std::vector<std::string>>();
+    calibration.warnings = document.at("warnings").get<std::vector<std::string>>();
   } catch (const Json::exception& error) {
     throw InvalidInput(fmt::format("{}: is no calibration.json of this version: {}; run grainlaw calibrate again",
                                    one_line(file.string(), 200), one_line(error.what(), 200)));

@@ -83,6 +83,7 @@ fit::Calibration odd_calibration() {
   shear.P_star = std::nan("");
   c.shear.push_back(shear);
   c.unused_tests = {"ISO-loading-s1"};
+  c.warnings = {"test D2-0.70-s1: 1 of 61 rows of s_par stand out"};
   return c;
 }
 
@@ -279,6 +280,7 @@ TEST_F(ResultFiles, CalibrationIsReadBack) {
   EXPECT_EQ(read.shear[0].s_max.value, c.estimates[3].value);
   EXPECT_TRUE(std::isnan(read.shear[0].P_star));
   EXPECT_EQ(read.unused_tests, c.unused_tests);
+  EXPECT_EQ(read.warnings, c.warnings);
   EXPECT_NE(refusal([&] { read_calibration(put("old.json", "{}"), read); }).find("run grainlaw calibrate again"),
             std::string::npos);
 }

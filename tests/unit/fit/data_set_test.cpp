@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -48,11 +49,16 @@ TEST(DataSet, SortsByWhatATestCanSay) {
 
 TEST(DataSet, IsotropicLoadingIsKnownAndNotUsed) {
   std::vector<TestRecord> tests = small_set();
-  TestRecord loading = tests[0];
+  TestRecord loading = tests[0];  // the other way round
   loading.name = "iso-loading";
-  loading.path.segments[0].direction = direction_of(Mode::ISO);
-  for (Observation& row : loading.rows) row.stress.tensor *= 1 + 1e-9;  // not the same series
-  for (Observation& row : loading.rows) row.P_star *= 1 + 1e-9;
+  std::reverse(loading.rows.begin(), loading.rows.end());
+  loading.path = {
+      loading.rows.front().nu, Branch::loading, {testing::synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.82)}};
+  const Eigen::Matrix3d first = loading.rows.front().strain.tensor;
+  for (Observation& row : loading.rows) {
+    row.strain.tensor -= first;
+    row.eps_vol = row.strain.tensor.trace();
+  }
   tests.push_back(loading);
   EXPECT_EQ(check_and_sort(tests).unused, std::vector<std::string>{"iso-loading"});
 }
@@ -111,6 +117,9 @@ TEST(DataSet, NoticesUnitsAndSwappedColumns) {
   tests = small_set();
   tests[1].rows[4].F_v *= 2;
   expect_refusal(tests, {tests[1].name, "row 4", "F_v"});
+  tests = small_set();
+  for (Observation& row : tests[1].rows) row.mean_overlap *= 1000;  // hard case F7 has the rest
+  expect_refusal(tests, {tests[1].name, "row 0", "P_star", "mean overlap", "units"});
 }
 
 TEST(DataSet, NoticesATestGivenTwice) {
@@ -119,6 +128,14 @@ TEST(DataSet, NoticesATestGivenTwice) {
   expect_refusal(tests, {tests[1].name, "twice"});
   tests.back().name = "another";
   expect_refusal(tests, {"another", tests[1].name, "same series"});
+  tests.back().rows.pop_back();
+  EXPECT_EQ(refusal(tests), "accepted") << "two runs of one packing may go the same way for a while";
+  tests.back().packing.seed += 1;
+  expect_refusal(tests, {"another", "row 0", tests[1].name, "seeds differ"});
+  tests = small_set();
+  tests.push_back(tests[0]);  // ends unjammed
+  tests.back().name = "another";
+  expect_refusal(tests, {"another", tests[0].name, "same series"});
 }
 
 TEST(DataSet, RefusesEmptyAndMisshapenTests) {
