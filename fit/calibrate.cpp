@@ -41,9 +41,9 @@ void fit_isotropic(const DataSet& data, Calibration& calibration, const Calibrat
   const std::vector<DensitySeries> series = isotropic_series(data, options);
   const std::string window = fmt::format("ISO unloading, nu >= {:g}", options.iso_nu_min);
   LawParameters<double>& law = calibration.parameters;
-  for (const StageFit& fit : fit_state_law("", series, window, law.isotropic, options, control))
-    record(calibration, fit);
-  const StageFit overlap = fit_overlap(series, window, law.isotropic.pressure.nu_c, law.overlap_D, options, control);
+  const std::vector<StageFit> state_law = fit_state_law("", series, window, law.isotropic, options, control);
+  for (const StageFit& fit : state_law) record(calibration, fit);
+  const StageFit overlap = fit_overlap(series, window, state_law.back(), law.overlap_D, options, control);
   if (overlap.solution.defined) law.overlap_D = overlap.solution.x(0);
   record(calibration, overlap);
   const StageFit trace = fit_fabric_trace(series, window, law.fabric_g3, options, control);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -45,10 +46,12 @@ Factor factor_of(const Eigen::MatrixXd& J) {
 constexpr Eigen::Index kPieces = 10;  // of a run: longer than the correlation of its rows, short enough to be many
 
 /// sum of g g^T over the pieces of a run, g = J^T r of a piece; the run is cut in the order of its rows.
-Eigen::MatrixXd products_of_pieces(const Eigen::MatrixXd& J, const Eigen::VectorXd& misfit) {
+Eigen::MatrixXd products_of_pieces(const Eigen::MatrixXd& J, const Eigen::VectorXd& misfit, Eigen::Index together) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(J.cols(), J.cols());
+  const Eigen::Index groups = (J.rows() + together - 1) / together;
   for (Eigen::Index k = 0; k < kPieces; ++k) {
-    const Eigen::Index begin = k * J.rows() / kPieces, n = (k + 1) * J.rows() / kPieces - begin;
+    const Eigen::Index begin = k * groups / kPieces * together;
+    const Eigen::Index n = std::min((k + 1) * groups / kPieces * together, J.rows()) - begin;
     const Eigen::VectorXd g = J.middleRows(begin, n).transpose() * misfit.segment(begin, n);
     sum += g * g.transpose();
   }
@@ -58,7 +61,8 @@ Eigen::MatrixXd products_of_pieces(const Eigen::MatrixXd& J, const Eigen::Vector
 }  // namespace
 
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
-                                     const std::vector<int>& cluster, const std::vector<bool>& free) {
+                                     const std::vector<int>& cluster, const std::vector<bool>& free,
+                                     Eigen::Index rows_together) {
   const auto all = static_cast<std::size_t>(jacobian.cols());
   ClusterCovariance result;
   result.covariance = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
@@ -97,7 +101,7 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
     }
     const Eigen::VectorXd g = W * power.cwiseProduct(W.transpose() * (J_L.transpose() * misfit(rows)));
     meat += g * g.transpose();
-    meat_of_pieces += products_of_pieces(J_L, misfit(rows));
+    meat_of_pieces += products_of_pieces(J_L, misfit(rows), rows_together);
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> excess(meat_of_pieces - meat);
   const Eigen::MatrixXd& U = excess.eigenvectors();

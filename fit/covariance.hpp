@@ -28,8 +28,10 @@ struct ClusterCovariance {
 inline constexpr double kNullSingularValue = 1e-7;  ///< relative to the largest; exact derivatives reach 1e-13
 inline constexpr double kLargestLeverage = 0.9;     ///< of a run on a direction; beyond, its residual says nothing
 
-/// `jacobian` and `misfit` weighted, rows of zero weight left out; `free` false holds a parameter (at a bound) fixed.
+/// `jacobian` and `misfit` weighted, rows of zero weight left out; `free` false holds a parameter (at a bound) fixed. Of
+/// the rows of a run, `rows_together` at a time stay in one piece.
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
-                                     const std::vector<int>& cluster, const std::vector<bool>& free);
+                                     const std::vector<int>& cluster, const std::vector<bool>& free,
+                                     Eigen::Index rows_together = 1);
 
 }  // namespace grainlaw::fit

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/inherited_error.hpp"
+
 namespace grainlaw::fit {
 namespace {
 
@@ -61,6 +63,16 @@ void require_densities(StageFit& fit, const std::vector<DensitySeries>& series, 
   for (const NamedEstimate& p : parameters) {
     fit.mark_not_identified(p.name, fmt::format("{} of at least {} densities; test more densities", found, needed));
   }
+}
+
+/// d misfit/d parameter, row by row.
+template <class Slope>
+Eigen::VectorXd slope_of(const std::vector<DensitySeries>& series, const Slope& slope) {
+  std::vector<double> values;
+  for (const DensitySeries& s : series) {
+    for (const DensityPoint& p : s.points) values.push_back(slope(p));
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 const char* const kMoreDensities = "the rows do not determine it; test more densities";
@@ -133,13 +145,21 @@ std::vector<StageFit> fit_state_law(const std::string& prefix, const std::vector
   law.coordination = {C.solution.x(0), C.solution.x(1), C.solution.x(2)};
   const StageFit& phi = run("rattlers", rattlers_problem(prefix, series, law.rattlers, law.coordination.nu_c), 2);
   law.rattlers = {phi.solution.x(0), phi.solution.x(1)};
+  inherit_error(fits[0], prefix + "coordination.nu_c",
+                slope_of(series,
+                         [&](const DensityPoint& p) {
+                           const double nu_c = law.coordination.nu_c;
+                           return law.rattlers.fraction(p.nu, nu_c) * law.rattlers.phi_v * p.nu / (nu_c * nu_c);
+                         }),
+                fits[1]);
   const StageFit& P = run("pressure", pressure_problem(prefix, series, law.pressure), 3);
   law.pressure = {P.solution.x(0), P.solution.x(1), P.solution.x(2)};
   return fits;
 }
 
-StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string& window, double nu_c, double start,
-                     const CalibrationOptions& options, const RunControl& control) {
+StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string& window, const StageFit& pressure,
+                     double start, const CalibrationOptions& options, const RunControl& control) {
+  const double nu_c = pressure.solution.x(2);
   for (const DensitySeries& s : series) {
     if (std::any_of(s.points.begin(), s.points.end(),
                     [](const DensityPoint& p) { return std::isnan(p.mean_overlap); })) {
@@ -151,8 +171,11 @@ StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string
       series, "mean_overlap", 1,
       [nu_c](const DensityPoint& p, const auto* x) { return x[0] * std::log(p.nu / nu_c) - p.mean_overlap; },
       [](const DensityPoint& p) { return p.mean_overlap; });
-  return fit_stage("overlap", window + fmt::format(", rows unweighted, nu_c = {:.5f} of the pressure", nu_c),
-                   {free_parameter("overlap.D", start)}, blocks, kMoreDensities, options.threads, control);
+  StageFit fit = fit_stage("overlap", window + fmt::format(", rows unweighted, nu_c = {:.5f} of the pressure", nu_c),
+                           {free_parameter("overlap.D", start)}, blocks, kMoreDensities, options.threads, control);
+  const double D = fit.solution.x(0);
+  inherit_error(pressure, "pressure.nu_c", slope_of(series, [&](const DensityPoint&) { return -D / nu_c; }), fit);
+  return fit;
 }
 
 StageFit fit_fabric_trace(const std::vector<DensitySeries>& series, const std::string& window, double start,

@@ -27,15 +27,15 @@ DensityProblem rattlers_problem(const std::string& prefix, const std::vector<Den
 DensityProblem pressure_problem(const std::string& prefix, const std::vector<DensitySeries>& series,
                                 const Pressure<double>& start);
 
-/// Stages "coordination", "rattlers", "pressure" with the prefix. `law` holds the start and takes the result.
+/// Stages "coordination", "rattlers", "pressure" with the prefix, in this order; errors of the second contain that of nu_c. `law` holds the start and takes the result.
 /// With fewer than three densities (two for the rattlers) parameters are not identified.
 std::vector<StageFit> fit_state_law(const std::string& prefix, const std::vector<DensitySeries>& series,
                                     const std::string& window, StateLaw<double>& law, const CalibrationOptions& options,
                                     const RunControl& control);
 
-/// Stage "overlap": D of Eq. (13). Left out when the data set does not contain overlaps.
-StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string& window, double nu_c, double start,
-                     const CalibrationOptions& options, const RunControl& control);
+/// Stage "overlap": D of Eq. (13), with nu_c of the stage `pressure`. Left out when the data set does not contain overlaps.
+StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string& window, const StageFit& pressure,
+                     double start, const CalibrationOptions& options, const RunControl& control);
 
 /// Stage "fabric_trace": g3.
 StageFit fit_fabric_trace(const std::vector<DensitySeries>& series, const std::string& window, double start,

@@ -52,7 +52,7 @@ TEST(DensityFit, RecoversTable2FromTheTablesOwnStart) {
   EXPECT_EQ(fits[0].stage.tests.size(), 2u);
   expect_recovered(law, truth.isotropic, 1e-9);
 
-  const StageFit D = fit_overlap(series, "all", law.pressure.nu_c, 0.5, {}, {});
+  const StageFit D = fit_overlap(series, "all", fits.back(), 0.5, {}, {});
   EXPECT_NEAR(D.solution.x(0), truth.overlap_D, 1e-9);
   const StageFit g3 = fit_fabric_trace(series, "all", 1, {}, {});
   EXPECT_NEAR(g3.solution.x(0), truth.fabric_g3, 1e-12);
@@ -97,7 +97,9 @@ TEST(DensityFit, OneSeriesHasValuesButNoErrors) {
 TEST(DensityFit, MissingOverlapsLeaveTheStageOut) {
   auto series = exact_series(published_parameters(), kDensities, 2);
   series[1].points[3].mean_overlap = std::nan("");
-  const StageFit D = fit_overlap(series, "all", 0.665, 0.5, {}, {});
+  StageFit pressure;
+  pressure.solution.x = Eigen::Vector3d(0.04, 0, 0.665);
+  const StageFit D = fit_overlap(series, "all", pressure, 0.5, {}, {});
   EXPECT_EQ(D.stage.estimates.at(0).estimate.status, Status::not_identified);
   EXPECT_NE(D.stage.estimates[0].estimate.note.find("iso-1"), std::string::npos);
 }

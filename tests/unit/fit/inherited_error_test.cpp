@@ -1,0 +1,67 @@
+#include "fit/inherited_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace grainlaw::fit {
+namespace {
+
+constexpr int kRows = 20;
+constexpr double kSlope = 3;  // of the second stage's misfit in the first one's parameter
+
+/// Blocks of x[0] + shift - value, one for each run, whose rows all hold its value.
+std::vector<ResidualBlock> blocks_of(const std::vector<double>& values, double shift) {
+  std::vector<ResidualBlock> blocks;
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    ResidualBlock block;
+    block.test = "run";
+    block.cluster = static_cast<int>(c);
+    block.weight = Eigen::VectorXd::Ones(kRows);
+    block.channels.push_back({"value", 0, kRows, 0, std::abs(values[c])});
+    block.evaluate = [value = values[c], shift](const double* x, double* misfit, double* jacobian) {
+      for (int i = 0; i < kRows; ++i) misfit[i] = x[0] + shift - value;
+      if (jacobian != nullptr) std::fill_n(jacobian, kRows, 1.0);
+      return true;
+    };
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+StageFit mean_of(const std::string& name, const std::vector<double>& values, double shift) {
+  return fit_stage(name, "", {{name, 0.5, -100, 100, 1}}, blocks_of(values, shift), "", 1, {});
+}
+
+double variance(const StageFit& fit) { return std::pow(fit.stage.estimates[0].estimate.standard_error, 2); }
+
+// a is the mean of x, b that of y - 3 a: b = mean(y - 3 x), with the error of a mean of these differences.
+TEST(InheritedError, IsThatOfBothStepsTogether) {
+  const std::vector<double> x{1.0, 1.4, 0.7, 1.1, 0.9};
+  for (const std::vector<double>& y :
+       {std::vector<double>{2, 2, 2, 2, 2}, {2.0, 2.1, 1.8, 2.2, 1.9}, {1.8, 0.9, 2.9, 1.6, 2.4}}) {
+    const StageFit a = mean_of("a", x, 0);
+    StageFit b = mean_of("b", y, kSlope * a.solution.x(0));
+    double mean = 0, expected = 0;
+    for (std::size_t c = 0; c < x.size(); ++c) mean += (y[c] - kSlope * x[c]) / 5;
+    for (std::size_t c = 0; c < x.size(); ++c) expected += std::pow(y[c] - kSlope * x[c] - mean, 2) / (5 * 4);
+    EXPECT_NEAR(b.solution.x(0), mean, 1e-9);
+    inherit_error(a, "a", Eigen::VectorXd::Constant(5 * kRows, kSlope), b);
+    EXPECT_NEAR(variance(b), expected, 1e-6 * expected);
+    EXPECT_NEAR(b.covariance(0, 0), expected, 1e-6 * expected);
+  }
+}
+
+TEST(InheritedError, NothingChangesWithoutAnErrorToInherit) {
+  const std::vector<double> y{2.0, 2.1, 1.8, 2.2, 1.9};
+  StageFit a = mean_of("a", {1.0, 1.4, 0.7, 1.1, 0.9}, 0), b = mean_of("b", y, 0);
+  const double before = variance(b);
+  inherit_error(a, "a", Eigen::VectorXd::Zero(5 * kRows), b);
+  EXPECT_EQ(variance(b), before) << "no slope";
+  a.mark_not_identified("a", "for the test");
+  inherit_error(a, "a", Eigen::VectorXd::Constant(5 * kRows, kSlope), b);
+  EXPECT_EQ(variance(b), before) << "not identified";
+}
+
+}  // namespace
+}  // namespace grainlaw::fit
