@@ -28,6 +28,8 @@ struct Common {
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool json = false;
   bool quiet = false;
+  bool resume = true;
+  double checkpoint_interval = 60;
 };
 
 /// What the user asked for, set by the callback of the chosen command.
@@ -42,11 +44,21 @@ void add_common(CLI::App& command, Common& common) {
   command.footer(kExitCodes);
 }
 
+/// Of the commands that run DEM.
+void add_checkpoints(CLI::App& command, Common& common) {
+  command.add_flag("--resume,!--no-resume", common.resume,
+                   "go on from the checkpoints of interrupted runs (default); --no-resume starts them anew");
+  command.add_option("--checkpoint", common.checkpoint_interval, "seconds between two checkpoints of a run; 0: every step")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+}
+
 void add_simulate(CLI::App& app, Common& common, Task& task) {
   CLI::App* command = app.add_subcommand("simulate", "one packing or one element test in the DEM engine");
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("TEST", options->test, "TEST.json")->required();
   command->add_option("-o,--output", options->output, "folder for series, states and summary")->required();
+  add_checkpoints(*command, common);
   add_common(*command, common);
   command->callback([options, &task] { task = [options](Session& session) { return simulate(*options, session); }; });
 }
@@ -61,6 +73,7 @@ void add_calibrate(CLI::App& app, Common& common, Task& task) {
   command->add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Coupling>{{"energy", Coupling::energy}, {"single", Coupling::single}}));
+  add_checkpoints(*command, common);
   add_common(*command, common);
   command->callback([options, &task] { task = [options](Session& session) { return calibrate(*options, session); }; });
 }
@@ -84,6 +97,7 @@ void add_predict(CLI::App& app, Common& common, Task& task) {
   command->add_option("--spec", options->spec,
                       "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
   command->add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS");
+  add_checkpoints(*command, common);
   add_common(*command, common);
   command->callback(
       [options, &task] { task = [options](Session& session) { return run_prediction(*options, session); }; });
@@ -120,7 +134,8 @@ int perform(const Task& task, const Common& common, const std::string& command) 
   try {
     const InterruptGuard interrupt;
     ProgressPrinter progress(stderr, common.quiet);
-    Session session{command, common.threads, common.json, interrupt.token(), progress, {}};
+    Session session{command,  common.threads, common.json,   interrupt.token(),
+                    progress, {},             common.resume, common.checkpoint_interval};
     return static_cast<int>(task(session));
   } catch (const InvalidInput& error) {
     return fail(ExitCode::invalid_input, error.what());

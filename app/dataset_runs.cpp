@@ -6,12 +6,12 @@
 #include <map>
 #include <set>
 
-#include "app/atomic_write.hpp"
 #include "app/files/preparation_json.hpp"
 #include "app/files/series_csv.hpp"
 #include "app/job_list.hpp"
 #include "app/output_folder.hpp"
 #include "app/runs.hpp"
+#include "dem/durable_file.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
@@ -30,7 +30,8 @@ std::string test_key(const PlannedTest& test) {
 double particles(const PlannedTest& test) { return static_cast<double>(test.preparation.packing.particles); }
 
 /// Preparations first, then the tests in order; each key once.
-std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore& store, RunCounts& counts) {
+std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore& store, const Session& session,
+                          RunCounts& counts) {
   std::vector<Job> jobs;
   std::map<std::string, std::size_t> index;
   const auto add = [&](const std::string& key, Job job) {
@@ -46,21 +47,23 @@ std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore&
     const std::string key = preparation_key(test);
     if (index.contains(key)) continue;
     const auto& options = test.preparation;
-    add(key, {fmt::format("seed {}", options.packing.seed), particles(test) * expected_steps(options), std::nullopt,
-              [&store, &options](int threads, const RunControl& control) {
+    const std::string name = fmt::format("seed {}", options.packing.seed);
+    add(key, {name, particles(test) * expected_steps(options), std::nullopt,
+              [&store, &options, policy = session.policy(name)](int threads, const RunControl& control) {
                 dem::PreparationOptions with_threads = options;
                 with_threads.engine.threads = threads;
-                ensure_preparation(store, with_threads, control);
+                ensure_preparation(store, with_threads, policy, control);
               }});
   }
   for (const PlannedTest& test : tests) {
     const std::string key = test_key(test);
     if (index.contains(key)) continue;
     add(key, {test.name, particles(test) * expected_steps(test.preparation, resolve(test.path)),
-              index.at(preparation_key(test)), [&store, &test](int threads, const RunControl& control) {
+              index.at(preparation_key(test)),
+              [&store, &test, policy = session.policy(test.name)](int threads, const RunControl& control) {
                 TestStart start = start_of(test);
                 start.preparation.engine.threads = threads;
-                ensure_test(store, start, test.path, control);
+                ensure_test(store, start, test.path, policy, control);
               }});
   }
   return jobs;
@@ -101,7 +104,7 @@ std::vector<PlannedTest> plan(const Spec& spec) {
 
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
                     const RunStore& store, Session& session, RunCounts& counts) {
-  run_jobs(jobs_for(tests, store, counts), session.threads, session.progress, session.stop);
+  run_jobs(jobs_for(tests, store, session, counts), session.threads, session.progress, session.stop);
 
   std::set<std::string> stale = series_listed(folder);
   Dataset dataset;
@@ -115,7 +118,7 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
     for (const Json& warning : record.at("warnings")) test.warnings.push_back(warning);
     const std::string series = planned.branch_of_preparation ? to_string(planned.path.branch) : "series";
     const fs::path file = folder / (planned.name + ".csv");
-    copy_atomically(store.folder(test.run) / (series + ".csv"), file);
+    dem::copy_durably(store.folder(test.run) / (series + ".csv"), file);
     test.record.rows = read_series(file, planned.path, test.record.packing);
     stale.erase(planned.name);
     const std::uint64_t seed = planned.preparation.packing.seed;

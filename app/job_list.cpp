@@ -39,7 +39,7 @@ class Schedule {
     lock.unlock();
     workers_.clear();  // joins
     for (const std::exception_ptr& error : errors_) rethrow_unless_interrupted(error);
-    if (all_.stop_requested()) throw Interrupted("interrupted; finished runs are kept");
+    if (all_.stop_requested()) throw Interrupted("interrupted; finished runs and checkpoints are kept, the same command goes on from there");
   }
 
  private:

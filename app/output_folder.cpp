@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "dem/durable_file.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
@@ -27,6 +28,7 @@ void make_output_folder(const fs::path& root) {
   }
   fs::create_directories(root, error);
   if (error) throw Error(fmt::format("{}: cannot be created: {}", root.string(), error.message()));
+  dem::remove_leftovers(root);
 }
 
 fs::path make_subfolder(const fs::path& root, const std::string& name) {
@@ -45,6 +47,7 @@ fs::path make_subfolder(const fs::path& root, const std::string& name) {
   }
   fs::create_directory(folder, error);
   if (error) throw Error(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
+  dem::remove_leftovers(folder);
   return folder;
 }
 

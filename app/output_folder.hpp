@@ -1,6 +1,6 @@
 #pragma once
 // Folders of results. Nothing is ever written outside the folder that the user named: names are checked, and a
-// symbolic link below the named folder is refused rather than followed.
+// symbolic link below the named folder is refused rather than followed. Temporary files of killed processes are removed.
 
 #include <filesystem>
 #include <string>

@@ -57,12 +57,12 @@ RunControl ProgressPrinter::control(std::size_t job, std::string name, std::stop
 void ProgressPrinter::report(std::size_t index, const Progress& progress) {
   const std::lock_guard lock(mutex_);
   Job& job = jobs_[index];
-  if (progress.stage != job.stage || progress.work < job.current) {
-    job.before += job.current;
-    job.stage = progress.stage;
-  }
+  job.stage = progress.stage;
   // only what was planned for counts: passes of a minimiser, for one, are no particle-steps
-  job.current = progress.unit == unit_ ? progress.work : 0;
+  if (progress.unit == unit_) {
+    if (!job.first) job.first = progress.work;
+    job.work = progress.work;
+  }
   job.fraction = progress.fraction;
   if (seconds_since(printed_) >= (terminal_ ? kTerminalInterval : kLogInterval)) print();
 }
@@ -81,22 +81,22 @@ std::string ProgressPrinter::status() const {
     return fmt::format("{}: {:3.0f} %{}", job.name, 100 * job.fraction,
                        job.stage.empty() ? "" : fmt::format(" of {}", job.stage));
   }
-  double expected = 0, covered = 0, worked = 0;
+  double expected = 0, covered = 0, earlier = 0, worked = 0;
   std::size_t done = 0;
   std::string running;
   for (const Job& job : jobs_) {
-    const double work = job.before + job.current;
     expected += job.expected;
-    covered += job.done ? job.expected : std::min(work, 0.99 * job.expected);
-    worked += work;
+    covered += job.done ? job.expected : std::min(job.work, 0.99 * job.expected);
+    earlier += std::min(job.first.value_or(0), 0.99 * job.expected);
+    worked += job.work - job.first.value_or(0);
     done += job.done ? 1 : 0;
     if (job.running) running += fmt::format("{}{}", running.empty() ? "" : ", ", job.name);
   }
-  const double elapsed = seconds_since(began_), fraction = expected > 0 ? covered / expected : 1;
-  std::string text = fmt::format("{:3.0f} %, {} of {} runs", 100 * fraction, done, jobs_.size());
+  const double elapsed = seconds_since(began_), gained = covered - earlier;
+  std::string text = fmt::format("{:3.0f} %, {} of {} runs", expected > 0 ? 100 * covered / expected : 100, done, jobs_.size());
   if (elapsed > 1 && worked > 0) text += fmt::format(", {}", rate_text(worked / elapsed, unit_));
-  if (elapsed > 2 && fraction > 0.005)
-    text += fmt::format(", {} left", clock_text(elapsed * (1 - fraction) / fraction));
+  if (elapsed > 2 && gained > 0.005 * expected)
+    text += fmt::format(", {} left", clock_text(elapsed * (expected - covered) / gained));
   return running.empty() ? text : fmt::format("{} ({})", text, running);
 }
 

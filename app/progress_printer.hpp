@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdio>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,10 +34,10 @@ class ProgressPrinter {
  private:
   struct Job {
     std::string name;
-    double expected = 0;  // work of the whole job
-    double before = 0;    // work of its stages that are over
-    double current = 0;   // work of the current stage
-    double fraction = 0;  // of the current stage
+    double expected = 0;          // work of the whole job
+    double work = 0;              // work done, that of an earlier session included
+    std::optional<double> first;  // work at the first report of this session
+    double fraction = 0;          // of the current stage
     std::string stage;
     bool running = false, done = false;
   };

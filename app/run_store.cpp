@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <map>
+#include <vector>
 
 #include "app/digest.hpp"
 #include "app/output_folder.hpp"
@@ -17,6 +18,24 @@
 namespace grainlaw::app {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Besides the named ones, what a killed writer left under a temporary name.
+bool is_scratch(const std::string& name) {
+  return name == kCheckpoint || name == kPreviousCheckpoint || name == kProgress || name.starts_with('.');
+}
+
+void remove_scratch(const fs::path& run) {
+  std::vector<fs::path> scratch;
+  std::error_code ignored;  // what stays is no part of the run
+  for (const auto& entry : fs::directory_iterator(run, ignored)) {
+    if (is_scratch(entry.path().filename().string())) scratch.push_back(entry.path());
+  }
+  for (const fs::path& file : scratch) fs::remove(file, ignored);
+}
+
+}  // namespace
 
 std::string run_key(const Json& request) {
   return sha256(Json{{"engine_version", dem::kEngineVersion}, {"request", request}}.dump());
@@ -46,6 +65,7 @@ std::optional<Json> RunStore::find(const std::string& key) const {
     for (const auto& file : record.at("files").items()) {
       if (!is_safe_name(file.key()) || sha256_of_file(run / file.key()) != file.value()) return std::nullopt;
     }
+    remove_scratch(run);
     return record;
   } catch (const Error&) {
     return std::nullopt;  // damaged: it is run again
@@ -60,6 +80,10 @@ fs::path RunStore::begin(const std::string& key) const {
   return make_subfolder(root_, key);
 }
 
+fs::path RunStore::reopen(const std::string& key) const {
+  return fs::exists(folder(key) / "run.json") ? begin(key) : make_subfolder(root_, key);
+}
+
 void RunStore::finish(const std::string& key, const Json& request, const OrderedJson& record) const {
   const fs::path run = folder(key);
   OrderedJson document{{"format", "grainlaw run"}, {"format_version", 1}, {"key", key}};
@@ -67,10 +91,13 @@ void RunStore::finish(const std::string& key, const Json& request, const Ordered
   document["request"] = OrderedJson(request);
   OrderedJson& files = document["files"] = OrderedJson::object();
   std::map<std::string, std::string> sums;
-  for (const auto& entry : fs::directory_iterator(run))
-    sums[entry.path().filename().string()] = sha256_of_file(entry.path());
+  for (const auto& entry : fs::directory_iterator(run)) {
+    const std::string name = entry.path().filename().string();
+    if (!is_scratch(name)) sums[name] = sha256_of_file(entry.path());
+  }
   for (const auto& [name, sum] : sums) files[name] = sum;
   write_json(run / "run.json", document);
+  remove_scratch(run);
 }
 
 }  // namespace grainlaw::app

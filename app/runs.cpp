@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "app/checkpoint_files.hpp"
 #include "app/files/path_json.hpp"
 #include "app/files/preparation_json.hpp"
 #include "app/files/series_csv.hpp"
 #include "app/files/spec_file.hpp"
+#include "app/preparation_folder.hpp"
 #include "app/provenance.hpp"
 #include "dem/state_file.hpp"
 #include "model/error.hpp"
@@ -27,74 +29,9 @@ Json packing_identity(const dem::PreparationOptions& o) {
   return identity;
 }
 
-OrderedJson packing_to_json(const dem::State& state, const dem::PackingOptions& options, bool prepared) {
-  return {{"seed", state.seed},
-          {"particles", state.packing.size()},
-          {"size_width", prepared ? OrderedJson(options.size_width) : OrderedJson(nullptr)},
-          {"mean_radius", dem::mean_radius(state.packing)},
-          {"stiffness", state.material.stiffness}};
-}
-
-OrderedJson relaxation_to_json(const dem::Relaxation& r) {
-  return {{"relaxed", r.relaxed},
-          {"max_net_force", r.max_net_force},
-          {"mean_contact_force", r.mean_contact_force},
-          {"passes", r.passes}};
-}
-
 OrderedJson cost_to_json(const RunCost& cost) {
   return {{"steps", cost.steps}, {"time_step", cost.time_step}, {"seconds", cost.seconds}};
 }
-
-/// Collects what a preparation yields into its folder.
-class PreparationFolder {
- public:
-  PreparationFolder(fs::path folder, std::string key, const dem::PreparationOptions& options)
-      : folder_(std::move(folder)), key_(std::move(key)), options_(options) {}
-
-  dem::PreparationSink sink() {
-    dem::PreparationSink sink;
-    sink.keep = [this](const dem::KeptState& kept) { keep(kept); };
-    sink.series = [this](Branch branch, const std::vector<Observation>& rows) {
-      write_series(folder_ / fmt::format("{}.csv", to_string(branch)), rows);
-    };
-    sink.warn = [this](const std::string& warning) { warnings_.push_back(warning); };
-    return sink;
-  }
-
-  OrderedJson record(const Stopwatch& stopwatch) const {
-    return {{"kind", "preparation"},
-            {"packing", packing_},
-            {"states", states_},
-            {"warnings", warnings_},
-            {"cost", cost_to_json({0, 0, stopwatch.seconds()})},
-            {"provenance", provenance("preparation", options_.engine.threads, stopwatch)}};
-  }
-
- private:
-  void keep(const dem::KeptState& kept) {
-    dem::State state = kept.state;
-    state.digest = key_;
-    const std::string file = kept_file(kept.branch, kept.nu);
-    dem::write_state(folder_ / file, state);
-    states_.push_back({{"branch", to_string(kept.branch)},
-                       {"nu", kept.nu},
-                       {"file", file},
-                       {"relaxation", relaxation_to_json(kept.relaxation)}});
-    if (!kept.relaxation.relaxed) {
-      warnings_.push_back(fmt::format(
-          "state at nu = {} of the {} branch: not relaxed, max net force {:.3g} of the mean contact force", kept.nu,
-          to_string(kept.branch), kept.relaxation.max_net_force / kept.relaxation.mean_contact_force));
-    }
-    packing_ = packing_to_json(state, options_.packing, true);
-  }
-
-  fs::path folder_;
-  std::string key_;
-  const dem::PreparationOptions& options_;
-  OrderedJson packing_, states_ = OrderedJson::array();
-  std::vector<std::string> warnings_;
-};
 
 dem::State start_state(const RunStore& store, const TestStart& start, const Path& path, const RunControl& control) {
   if (!start.given) {
@@ -114,10 +51,6 @@ dem::State start_state(const RunStore& store, const TestStart& start, const Path
 }
 
 }  // namespace
-
-std::string kept_file(Branch branch, double nu) {
-  return fmt::format("{}-{}.state", to_string(branch), density_text(nu));
-}
 
 Json preparation_request(const dem::PreparationOptions& o) {
   Json request{{"kind", "preparation"}, {"packing", packing_identity(o)}, {"rows", o.rows}};
@@ -141,38 +74,68 @@ Json test_request(const TestStart& start, const Path& path) {
   return request;
 }
 
-Json ensure_preparation(const RunStore& store, const dem::PreparationOptions& options, const RunControl& control) {
+Json ensure_preparation(const RunStore& store, const dem::PreparationOptions& options, const ResumePolicy& policy,
+                        const RunControl& control) {
   const Json request = preparation_request(options);
   const std::string key = run_key(request);
   if (auto record = store.find(key)) return *record;
   const Stopwatch stopwatch;
-  PreparationFolder folder(store.begin(key), key, options);
-  dem::prepare(options, folder.sink(), control);
-  store.finish(key, request, folder.record(stopwatch));
+  const fs::path run = policy.resume ? store.reopen(key) : store.begin(key);
+  const CheckpointFiles checkpoints(run, key, policy);
+  PreparationFolder folder(run, key);
+  auto checkpoint = checkpoints.load();
+  if (checkpoint && !folder.take_up()) {
+    if (policy.log) policy.log("starts anew: what it had yielded before the checkpoint is damaged or missing");
+    checkpoint.reset();
+  }
+  if (!checkpoint) store.begin(key);
+  const double earlier = checkpoint ? checkpoint->seconds : 0;
+  if (checkpoint) {
+    dem::continue_preparation(std::move(*checkpoint), options, folder.sink(), control, checkpoints.checkpointing());
+  } else {
+    dem::prepare(options, folder.sink(), control, checkpoints.checkpointing());
+  }
+  store.finish(key, request,
+               {{"kind", "preparation"},
+                {"packing", folder.packing(options.packing)},
+                {"states", folder.states()},
+                {"warnings", folder.warnings()},
+                {"cost", cost_to_json({0, 0, earlier + stopwatch.seconds()})},
+                {"provenance", provenance("preparation", options.engine.threads, stopwatch)}});
   return store.find(key).value();
 }
 
-Json ensure_test(const RunStore& store, const TestStart& start, const Path& path, const RunControl& control) {
+Json ensure_test(const RunStore& store, const TestStart& start, const Path& path, const ResumePolicy& policy,
+                 const RunControl& control) {
   const Json request = test_request(start, path);
   const std::string key = run_key(request);
   if (auto record = store.find(key)) return *record;
   const Stopwatch stopwatch;
-  const dem::State state = start_state(store, start, path, control);
   dem::ElementTestOptions options;
   options.engine = start.preparation.engine;
   options.drive = start.preparation.drive;
   options.rows = start.rows;
-  const dem::ElementTest test = dem::run_element_test(state, resolve(path), options, control);
-  const fs::path folder = store.begin(key);
+  const fs::path folder = policy.resume ? store.reopen(key) : store.begin(key);
+  const CheckpointFiles checkpoints(folder, key, policy);
+  auto checkpoint = checkpoints.load();
+  if (!checkpoint) store.begin(key);
+  const double earlier = checkpoint ? checkpoint->seconds : 0;
+  const auto segments = resolve(path);
+  const dem::ElementTest test =
+      checkpoint ? dem::continue_element_test(std::move(*checkpoint), segments, options, control, {},
+                                              checkpoints.checkpointing())
+                 : dem::run_element_test(start_state(store, start, path, control), segments, options, control, {},
+                                         checkpoints.checkpointing());
   write_series(folder / "series.csv", test.rows);
   dem::State end = test.end;
   end.digest = key;
   dem::write_state(folder / "end.state", end);
+  const auto width = start.given ? std::nullopt : std::optional(start.preparation.packing.size_width);
   store.finish(key, request,
                {{"kind", "test"},
-                {"packing", packing_to_json(state, start.preparation.packing, !start.given)},
+                {"packing", packing_to_json(end, width)},
                 {"warnings", test.warnings},
-                {"cost", cost_to_json({test.steps, test.time_step, stopwatch.seconds()})},
+                {"cost", cost_to_json({test.steps, test.time_step, earlier + stopwatch.seconds()})},
                 {"provenance", provenance("element test", start.preparation.engine.threads, stopwatch)}});
   return store.find(key).value();
 }

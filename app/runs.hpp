@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/checkpoint_files.hpp"
 #include "app/files/dataset.hpp"
 #include "app/run_store.hpp"
 #include "dem/preparation.hpp"
@@ -28,15 +29,14 @@ struct TestStart {
 Json preparation_request(const dem::PreparationOptions& options);
 Json test_request(const TestStart& start, const Path& path);
 
-/// Runs the preparation unless it is in the store; its record (run.json). Files: loading.csv, unloading.csv and one
-/// state file for each kept state.
-Json ensure_preparation(const RunStore& store, const dem::PreparationOptions& options, const RunControl& control);
+/// Runs the preparation unless it is in the store, from a checkpoint if there is one; its record (run.json). Files:
+/// loading.csv, unloading.csv and one state file for each kept state. Interrupted leaves a checkpoint.
+Json ensure_preparation(const RunStore& store, const dem::PreparationOptions& options, const ResumePolicy& policy,
+                        const RunControl& control);
 
 /// Likewise an element test; a preparation that it needs must be in the store. Files: series.csv, start.state, end.state.
-Json ensure_test(const RunStore& store, const TestStart& start, const Path& path, const RunControl& control);
-
-/// Name of the file of a kept state in its preparation's folder, e.g. "unloading-0.70.state".
-std::string kept_file(Branch branch, double nu);
+Json ensure_test(const RunStore& store, const TestStart& start, const Path& path, const ResumePolicy& policy,
+                 const RunControl& control);
 
 /// What a series on disk was measured on, from a run's record.
 PackingInfo packing_from_record(const Json& record);

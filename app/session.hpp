@@ -4,6 +4,7 @@
 #include <stop_token>
 #include <string>
 
+#include "app/checkpoint_files.hpp"
 #include "app/progress_printer.hpp"
 #include "app/provenance.hpp"
 
@@ -16,6 +17,13 @@ struct Session {
   std::stop_token stop;       ///< the user wishes to end
   ProgressPrinter& progress;  ///< stderr
   Stopwatch stopwatch;        ///< started with the command
+  bool resume = true;         ///< go on from checkpoints of interrupted runs
+  double checkpoint_interval = 60;  ///< [s]
+
+  /// For the run with this name.
+  ResumePolicy policy(const std::string& run) const {
+    return {resume, checkpoint_interval, [this, run](const std::string& text) { progress.log(run + ": " + text); }};
+  }
 };
 
 /// Result of a command on stdout. Throws Error when it cannot be written.

@@ -16,6 +16,10 @@ namespace {
 constexpr double kMaxSteps = 1e12;            // per segment: years of work; beyond it a rate was mistyped
 constexpr double kRounding = 1e-11;           // of the energies' sum: what is lost in adding it up over a run
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
+
 void check_options(const State& start, const ElementTestOptions& options) {
   const double fraction = options.engine.time_step_fraction;
   if (!(fraction > 0) || !std::isfinite(fraction)) {
@@ -66,12 +70,13 @@ void fill_path(Observation& row, const StraightSegment& segment, int index, doub
 /// largest |W_box| of the rows so far, which equals the column energy_residual wherever the work is at its largest.
 class BalanceJudge {
  public:
-  /// |imbalance| over max |W_box| + E_kin(0) + D; 0 where adding up the energies can lose as much by rounding.
-  double residual(const Observation& row, const Ledger& ledger) {
-    largest_work_ = std::max(largest_work_, std::abs(ledger.W_box));
-    const double exchanged = ledger.E_kin_start + ledger.D_contact + ledger.D_background;
-    const double imbalance = std::abs(row.energy_residual) * (std::abs(ledger.W_box) + exchanged);
-    if (imbalance <= kRounding * (row.E_pot + row.E_kin + std::abs(ledger.E_start))) return 0;
+  /// |imbalance| over max |W_box| + E_kin(0) + D; 0 where adding up the energies can lose as much by rounding. To be
+  /// asked for each row in turn; `first` is the first one.
+  double residual(const Observation& row, const Observation& first) {
+    largest_work_ = std::max(largest_work_, std::abs(row.W_box));
+    const double exchanged = first.E_kin + row.D_contact + row.D_background;
+    const double imbalance = std::abs(row.energy_residual) * (std::abs(row.W_box) + exchanged);
+    if (imbalance <= kRounding * (row.E_pot + row.E_kin + first.E_pot + first.E_kin)) return 0;
     return imbalance / (largest_work_ + exchanged);
   }
 
@@ -98,65 +103,125 @@ struct Excess {
 /// One run in progress: simulation, path and what has been seen so far.
 class TestRun {
  public:
-  TestRun(const State& start, const std::vector<StraightSegment>& segments, const ElementTestOptions& options,
-          const RunControl& control, const StepObserver& on_step)
-      : segments_(segments), options_(options), on_step_(on_step), N_(shear_direction(segments)),
-        watch_(control, "element test", "particle-steps") {
+  TestRun(const std::vector<StraightSegment>& segments, const ElementTestOptions& options, const RunControl& control,
+          const StepObserver& on_step, const Checkpointing& checkpointing)
+      : segments_(segments), options_(options), on_step_(on_step), checkpointing_(checkpointing),
+        N_(shear_direction(segments)), watch_(control, "element test", "particle-steps") {}
+
+  void start(const State& state) {
     CellMotion motion;
-    motion.H = start.packing.H;
-    motion.transport = options.drive.transport;
-    if (!segments.empty()) motion = motion_at(make_drive(segments[0], options.drive, start.packing.H), 0);
-    sim_ = start_simulation(fresh(start), options.engine, motion);
+    motion.H = state.packing.H;
+    motion.transport = options_.drive.transport;
+    if (!segments_.empty()) motion = motion_at(make_drive(segments_[0], options_.drive, state.packing.H), 0);
+    start_engine(fresh(state), motion);
     open_ledger(sim_);
-    engine_dt_ = sim_.dt;
-    for (const StraightSegment& segment : segments) {
-      total_steps_ += static_cast<double>(steps_for(make_drive(segment, options.drive, start.packing.H)));
-    }
-    if (segments.empty()) {
-      StraightSegment rest;
-      take_row(motion, rest, 0, 0);
-    } else {
-      take_row(motion, segments[0], 0, 0);
-    }
+    take_row(motion, segments_.empty() ? StraightSegment{} : segments_[0], 0);
   }
 
-  void run_segment(int index) {
-    const StraightSegment& segment = segments_[static_cast<std::size_t>(index)];
-    const Drive drive = make_drive(segment, options_.drive, sim_.state.packing.H);
-    const std::uint64_t steps = steps_for(drive);
-    const double dt = drive.duration / static_cast<double>(steps);
-    if (index > 0) sim_ = restarted(std::move(sim_), motion_at(drive, 0));
-    sim_.dt = dt;
-    result_.time_step = std::max(result_.time_step, dt);
-    const double length = segment.length;
-    int next = 1;  // row to be taken next
-    for (std::uint64_t k = 0; k < steps; ++k) {
-      const double t = k + 1 == steps ? drive.duration : static_cast<double>(k + 1) * dt;
-      const CellMotion end = motion_at(drive, t);
-      advance(sim_, motion_at(drive, (static_cast<double>(k) + 0.5) * dt), end);
-      const double e = path_parameter(drive, t);
-      if (next <= options_.rows && e >= row_position(next, length)) {
-        take_row(end, segment, index, e);
-        while (next <= options_.rows && e >= row_position(next, length)) ++next;
-      }
-      if (on_step_) on_step_(sim_, index, e);
-      ++result_.steps;
-      const double done = static_cast<double>(result_.steps);
-      watch_.tick(done / total_steps_, done * static_cast<double>(sim_.state.packing.size()));
-    }
-    sheared_ += shear_length(segment);
+  void resume(Checkpoint from) {
+    const auto refuse_if = [](bool wrong) {
+      if (wrong) throw InvalidInput("the checkpoint is not one of this test; start it anew");
+    };
+    refuse_if(from.segment < 0 || static_cast<std::size_t>(from.segment) >= segments_.size() || from.rows.empty());
+    at_ = std::move(from);
+    CellMotion motion;
+    motion.H = at_.state.packing.H;
+    motion.transport = options_.drive.transport;
+    refuse_if(at_.state.ax.empty() || at_.state.ref_x.empty());
+    start_engine(std::move(at_.state), motion);
+    refuse_if(at_.segment_steps < 1 || at_.segment_steps > steps_for(drive_of_segment()) || at_.steps < at_.segment_steps);
+    for (int i = 0; i < at_.segment; ++i) sheared_ += shear_length(segments_[static_cast<std::size_t>(i)]);
+    for (const Observation& row : at_.rows) judge(row);
   }
 
-  ElementTest finish() {
-    imbalance_.report(result_.warnings, "energy residual", options_.warn_energy_residual, result_.rows.size());
-    rate_.report(result_.warnings, "inertial number", options_.warn_inertial_number, result_.rows.size());
-    result_.end = std::move(sim_.state);
-    return std::move(result_);
+  ElementTest run() {
+    for (; static_cast<std::size_t>(at_.segment) < segments_.size(); ++at_.segment, at_.segment_steps = 0) run_segment();
+    ElementTest result;
+    imbalance_.report(result.warnings, "energy residual", options_.warn_energy_residual, at_.rows.size());
+    rate_.report(result.warnings, "inertial number", options_.warn_inertial_number, at_.rows.size());
+    result.steps = at_.steps;
+    result.time_step = at_.time_step;
+    result.seconds = seconds();
+    result.rows = std::move(at_.rows);
+    result.end = std::move(sim_.state);
+    return result;
   }
 
  private:
-  double row_position(int row, double length) const {
+  const StraightSegment& segment() const { return segments_[static_cast<std::size_t>(at_.segment)]; }
+  Drive drive_of_segment() const { return make_drive(segment(), options_.drive, at_.segment_H); }
+  double seconds() const { return at_.seconds + seconds_since(began_); }
+
+  void start_engine(State state, const CellMotion& motion) {
+    sim_ = start_simulation(std::move(state), options_.engine, motion);
+    engine_dt_ = sim_.dt;
+    for (const StraightSegment& segment : segments_) {
+      total_steps_ += static_cast<double>(steps_for(make_drive(segment, options_.drive, motion.H)));
+    }
+  }
+
+  void run_segment() {
+    if (at_.segment_steps == 0) at_.segment_H = sim_.state.packing.H;
+    const Drive drive = drive_of_segment();
+    const std::uint64_t steps = steps_for(drive);
+    const double dt = drive.duration / static_cast<double>(steps);
+    if (at_.segment > 0 && at_.segment_steps == 0) sim_ = restarted(std::move(sim_), motion_at(drive, 0));
+    sim_.dt = dt;
+    at_.time_step = std::max(at_.time_step, dt);
+    const auto time_of = [&](std::uint64_t k) { return k == steps ? drive.duration : static_cast<double>(k) * dt; };
+    int next_row = 1;
+    if (at_.segment_steps > 0) {
+      const double e = path_parameter(drive, time_of(at_.segment_steps));
+      next_row = row_after(1, e);
+      after_step(e);
+    }
+    while (at_.segment_steps < steps) {
+      const std::uint64_t k = at_.segment_steps;
+      const CellMotion end = motion_at(drive, time_of(k + 1));
+      advance(sim_, motion_at(drive, (static_cast<double>(k) + 0.5) * dt), end);
+      ++at_.segment_steps;
+      ++at_.steps;
+      const double e = path_parameter(drive, time_of(k + 1));
+      if (row_after(next_row, e) != next_row) {
+        take_row(end, segment(), e);
+        next_row = row_after(next_row, e);
+      }
+      after_step(e);
+    }
+    sheared_ += shear_length(segment());
+  }
+
+  /// What is not the run itself: the observer, progress, and saving.
+  void after_step(double e) {
+    try {
+      if (on_step_) on_step_(sim_, at_.segment, e);
+      const double done = static_cast<double>(at_.steps);
+      watch_.tick(done / total_steps_, done * static_cast<double>(sim_.state.packing.size()));
+    } catch (const Interrupted&) {
+      save();
+      throw;
+    }
+    if (checkpointing_.save && seconds_since(saved_) >= checkpointing_.interval) save();
+  }
+
+  void save() {
+    if (!checkpointing_.save) return;
+    Checkpoint checkpoint = at_;
+    checkpoint.state = sim_.state;
+    checkpoint.seconds = seconds();
+    checkpointing_.save(checkpoint);
+    saved_ = Clock::now();
+  }
+
+  double row_position(int row) const {
+    const double length = segment().length;
     return row == options_.rows ? length : length * row / options_.rows;
+  }
+
+  /// The first row from `next` on whose place is beyond e.
+  int row_after(int next, double e) const {
+    while (next <= options_.rows && e >= row_position(next)) ++next;
+    return next;
   }
 
   std::uint64_t steps_for(const Drive& drive) const {
@@ -168,18 +233,24 @@ class TestRun {
     return static_cast<std::uint64_t>(std::max(1.0, steps));
   }
 
-  void take_row(const CellMotion& motion, const StraightSegment& segment, int index, double e) {
-    Observation row = observe(sim_, motion, N_);
-    fill_path(row, segment, index, e, sheared_);
-    result_.rows.push_back(row);
-    const double residual = judge_.residual(row, sim_.state.ledger);
+  /// Notes what is beyond its limit; the residual is returned.
+  double judge(const Observation& row) {
+    const double residual = judge_.residual(row, at_.rows.front());
     imbalance_.note(residual, options_.warn_energy_residual, row.nu);
     rate_.note(row.inertial_number, options_.warn_inertial_number, row.nu);
+    return residual;
+  }
+
+  void take_row(const CellMotion& motion, const StraightSegment& on, double e) {
+    at_.rows.push_back(observe(sim_, motion, N_));
+    Observation& row = at_.rows.back();
+    fill_path(row, on, at_.segment, e, sheared_);
+    const double residual = judge(row);
     if (!(residual <= options_.stop_energy_residual)) {
       throw Error(fmt::format(
           "energy balance: residual {:.3g} at row {} (segment {}, nu = {:.6g}, step {}) is beyond {}; the results would be "
           "wrong, give a smaller time_step_fraction than {}",
-          residual, result_.rows.size() - 1, index, row.nu, sim_.state.step, options_.stop_energy_residual,
+          residual, at_.rows.size() - 1, at_.segment, row.nu, sim_.state.step, options_.stop_energy_residual,
           options_.engine.time_step_fraction));
     }
   }
@@ -187,28 +258,37 @@ class TestRun {
   const std::vector<StraightSegment>& segments_;
   const ElementTestOptions& options_;
   const StepObserver& on_step_;
+  const Checkpointing& checkpointing_;
   Deviator<double> N_;
   RunWatch watch_;
+  Checkpoint at_;           // where the run stands; its state is sim_'s
   Simulation sim_;
   double engine_dt_ = 0;    // [s]
   double total_steps_ = 0;  // of all segments
   BalanceJudge judge_;
   Excess imbalance_, rate_;
   double sheared_ = 0;      // shear path of the segments that are done
-  ElementTest result_;
+  Clock::time_point began_ = Clock::now(), saved_ = began_;
 };
 
 }  // namespace
 
 ElementTest run_element_test(const State& start, const std::vector<StraightSegment>& segments,
-                             const ElementTestOptions& options, const RunControl& control, const StepObserver& on_step) {
+                             const ElementTestOptions& options, const RunControl& control, const StepObserver& on_step,
+                             const Checkpointing& checkpointing) {
   check_options(start, options);
-  const auto began = std::chrono::steady_clock::now();
-  TestRun run(start, segments, options, control, on_step);
-  for (std::size_t i = 0; i < segments.size(); ++i) run.run_segment(static_cast<int>(i));
-  ElementTest test = run.finish();
-  test.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  return test;
+  TestRun run(segments, options, control, on_step, checkpointing);
+  run.start(start);
+  return run.run();
+}
+
+ElementTest continue_element_test(Checkpoint from, const std::vector<StraightSegment>& segments,
+                                  const ElementTestOptions& options, const RunControl& control,
+                                  const StepObserver& on_step, const Checkpointing& checkpointing) {
+  check_options(from.state, options);
+  TestRun run(segments, options, control, on_step, checkpointing);
+  run.resume(std::move(from));
+  return run.run();
 }
 
 }  // namespace grainlaw::dem

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "dem/checkpoint.hpp"
 #include "dem/drive.hpp"
 #include "model/observation.hpp"
 #include "model/run_control.hpp"
@@ -30,7 +31,8 @@ struct ElementTest {
   std::vector<std::string> warnings;  ///< energy residual or inertial number beyond their limits, for the log
 };
 
-/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state.
+/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state. After a
+/// continuation it sees the checkpoint's step once more.
 using StepObserver = std::function<void(const Simulation&, int segment, double e)>;
 
 /// Runs `segments` (resolve() of the path at the state's own volume fraction) from `start`; time, step and ledger begin
@@ -39,6 +41,13 @@ using StepObserver = std::function<void(const Simulation&, int segment, double e
 /// forces are computed anew there. Throws InvalidInput for options out of range, Interrupted, and Error 'energy
 /// balance' (hard cases D9, D16) naming row and residual.
 ElementTest run_element_test(const State& start, const std::vector<StraightSegment>& segments,
-                             const ElementTestOptions& options, const RunControl& control, const StepObserver& on_step = {});
+                             const ElementTestOptions& options, const RunControl& control,
+                             const StepObserver& on_step = {}, const Checkpointing& checkpointing = {});
+
+/// Goes on from a checkpoint of the same test (same segments and options but threads and checkpointing); the result is
+/// the uninterrupted run's, bit for bit. Throws InvalidInput for a checkpoint that cannot be one of this test's.
+ElementTest continue_element_test(Checkpoint from, const std::vector<StraightSegment>& segments,
+                                  const ElementTestOptions& options, const RunControl& control,
+                                  const StepObserver& on_step = {}, const Checkpointing& checkpointing = {});
 
 }  // namespace grainlaw::dem

@@ -48,6 +48,8 @@ struct PreparationSink {
   std::function<void(const KeptState&)> keep;                       ///< required
   std::function<void(Branch, const std::vector<Observation>&)> series;  ///< whole series of a branch; required
   std::function<void(const std::string&)> warn;  ///< energy or rate beyond their limits, with the stage; may be empty
+  /// Whether a continued preparation delivered this state before it was interrupted; it is not made again. May be empty.
+  std::function<bool(Branch, double nu)> has;
 };
 
 /// The random gas: radii uniform on 2<r>/(w+1) [1, w], random positions without overlap beyond what the relaxation
@@ -55,7 +57,15 @@ struct PreparationSink {
 State random_gas(const PackingOptions& options, double nu_gas, const EngineOptions& engine, const RunControl& control);
 
 /// Runs the whole preparation. The branches are not interrupted by keeping: when one crosses a kept density, a copy is
-/// set to exactly that density and relaxed. Throws InvalidInput for options out of range, Interrupted on request.
-void prepare(const PreparationOptions& options, const PreparationSink& sink, const RunControl& control);
+/// set to exactly that density and relaxed. Checkpoints are taken along its driven stages; a relaxation or the random gas
+/// that is interrupted is made again. Throws InvalidInput for options out of range, Interrupted on request.
+void prepare(const PreparationOptions& options, const PreparationSink& sink, const RunControl& control,
+             const Checkpointing& checkpointing = {});
+
+/// Goes on from a checkpoint of the same preparation; what the sink gets besides what it has already is the uninterrupted
+/// preparation's, bit for bit, and warnings of finished stages may come twice. Throws InvalidInput for a checkpoint that
+/// cannot be one of it.
+void continue_preparation(Checkpoint from, const PreparationOptions& options, const PreparationSink& sink,
+                          const RunControl& control, const Checkpointing& checkpointing = {});
 
 }  // namespace grainlaw::dem

@@ -246,7 +246,7 @@ Relaxation relax(State& state, const EngineOptions& engine, const RelaxOptions& 
   }
   if (!(engine.skin > 0) || !std::isfinite(engine.skin)) throw InvalidInput("skin: must be positive and finite");
   const double k = state.material.stiffness;
-  RunWatch watch(control, "relaxation", "particle-steps");
+  RunWatch watch(control, "relaxation", "force passes");
   Minimiser minimiser(packing, engine.threads, engine.skin * mean_radius(packing));
   const double rounding = kRounding * k * mean_radius(packing);
   Pacing pacing;
@@ -261,8 +261,7 @@ Relaxation relax(State& state, const EngineOptions& engine, const RelaxOptions& 
     if (result.relaxed || result.passes >= options.max_passes) break;
     const double ratio = result.max_net_force / result.mean_contact_force;
     if (first_ratio == 0) first_ratio = ratio;
-    watch.tick(fraction_done(ratio, first_ratio, options.tolerance),
-               static_cast<double>(result.passes) * static_cast<double>(packing.size()));
+    watch.tick(fraction_done(ratio, first_ratio, options.tolerance), static_cast<double>(result.passes));
     iterate(minimiser, totals, pacing);
   }
   minimiser.store();

@@ -1,13 +1,12 @@
 #pragma once
-// One file format for kept states and checkpoints; integers and doubles little-endian:
-//   "GRAINLAW" | version u32 | length of the header u32 | header, JSON | numbers, 8 bytes each | SHA-256 of all before
+// The file of a kept state (layout of the envelope: dem/sealed_file.hpp).
+//   header: particles, step, seed, digest, has_accelerations, has_list_reference
 //   numbers: material, time, ledger, sums, H and ref_H by rows; radius, mass, s, v; a (if has_accelerations) and
 //   reference fractions (if has_list_reference), each array whole; ids. SI units, in the order of dem/state.hpp.
-// Written to a temporary name, synced and renamed, so a final name never holds half a file. Read: checksum first, then
-// everything else.
 
 #include <filesystem>
 
+#include "dem/sealed_file.hpp"
 #include "dem/state.hpp"
 
 namespace grainlaw::dem {
@@ -20,5 +19,10 @@ void write_state(const std::filesystem::path& file, const State& state);
 
 /// The state bit for bit as written. Throws InvalidInput naming file and reason: damaged, other version, out of bounds.
 State read_state(const std::filesystem::path& file);
+
+/// A state as part of another file: its keys of the header, its numbers, and both read back and checked.
+nlohmann::json state_header(const State& state);
+void put_state(const State& state, NumberWriter& numbers);
+State take_state(const nlohmann::json& header, NumberReader& numbers);
 
 }  // namespace grainlaw::dem

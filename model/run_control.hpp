@@ -11,7 +11,7 @@ namespace grainlaw {
 struct Progress {
   std::string stage;    ///< what is being done, e.g. "seed 1 D2 0.70"
   double fraction = 0;  ///< done part of the stage [0..1]
-  double work = 0;      ///< work done so far in `unit` [unit]
+  double work = 0;      ///< work done so far, that of earlier stages and sessions included [unit]
   std::string unit;     ///< unit of `work`, e.g. "particle-steps"
 };
 

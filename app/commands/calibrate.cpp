@@ -6,7 +6,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/atomic_write.hpp"
 #include "app/dataset_runs.hpp"
 #include "app/files/calibration_file.hpp"
 #include "app/files/dataset.hpp"
@@ -14,6 +13,7 @@
 #include "app/files/spec_file.hpp"
 #include "app/output_folder.hpp"
 #include "app/report/report.hpp"
+#include "dem/durable_file.hpp"
 #include "fit/calibrate.hpp"
 #include "model/error.hpp"
 
@@ -27,8 +27,8 @@ Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) 
   std::error_code error;
   if (fs::equivalent(from, to, error)) return dataset;
   for (const DatasetTest& test : dataset.tests)
-    copy_atomically(from / (test.record.name + ".csv"), to / (test.record.name + ".csv"));
-  copy_atomically(from / "dataset.json", to / "dataset.json");
+    dem::copy_durably(from / (test.record.name + ".csv"), to / (test.record.name + ".csv"));
+  dem::copy_durably(from / "dataset.json", to / "dataset.json");
   return read_dataset(to);
 }
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "app/atomic_write.hpp"
 #include "app/digest.hpp"
 #include "app/files/path_json.hpp"
 #include "app/files/preparation_json.hpp"
@@ -15,6 +14,7 @@
 #include "app/job_list.hpp"
 #include "app/output_folder.hpp"
 #include "app/runs.hpp"
+#include "dem/durable_file.hpp"
 #include "dem/sphere_table.hpp"
 #include "dem/state_file.hpp"
 #include "model/error.hpp"
@@ -34,12 +34,12 @@ void run(const TestFile& test, const RunStore& store, Session& session) {
   if (!test.given) {
     const bool done = store.find(run_key(preparation_request(test.preparation))).has_value();
     const auto particles = static_cast<double>(test.preparation.packing.particles);
-    jobs.push_back({fmt::format("preparation of seed {}", test.preparation.packing.seed),
-                    done ? 0 : particles * expected_steps(test.preparation), std::nullopt,
-                    [&](int threads, const RunControl& control) {
+    const std::string name = fmt::format("preparation of seed {}", test.preparation.packing.seed);
+    jobs.push_back({name, done ? 0 : particles * expected_steps(test.preparation), std::nullopt,
+                    [&, policy = session.policy(name)](int threads, const RunControl& control) {
                       dem::PreparationOptions options = test.preparation;
                       options.engine.threads = threads;
-                      ensure_preparation(store, options, control);
+                      ensure_preparation(store, options, policy, control);
                     }});
   }
   if (test.start != Start::preparation) {
@@ -48,10 +48,11 @@ void run(const TestFile& test, const RunStore& store, Session& session) {
     const bool done = store.find(run_key(test_request(start_of(test), test.path))).has_value();
     jobs.push_back(
         {"element test", done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
-         jobs.empty() ? std::nullopt : std::optional<std::size_t>(0), [&](int threads, const RunControl& control) {
+         jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
+         [&, policy = session.policy("element test")](int threads, const RunControl& control) {
            TestStart start = start_of(test);
            start.preparation.engine.threads = threads;
-           ensure_test(store, start, test.path, control);
+           ensure_test(store, start, test.path, policy, control);
          }});
   }
   run_jobs(jobs, session.threads, session.progress, session.stop);
@@ -92,7 +93,7 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
                                  const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& file : record.at("files").items()) {
-    copy_atomically(store.folder(key) / file.key(), folder / file.key());
+    dem::copy_durably(store.folder(key) / file.key(), folder / file.key());
     names.push_back(file.key());
   }
   return names;

@@ -10,8 +10,8 @@
 #include <memory>
 #include <vector>
 
-#include "app/atomic_write.hpp"
 #include "app/one_line.hpp"
+#include "dem/durable_file.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
@@ -226,7 +226,7 @@ void write_json(const std::filesystem::path& file, const OrderedJson& document) 
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.string(), error.what()));
   }
-  write_atomically(file, text);
+  dem::write_durably(file, text);
 }
 
 OrderedJson number_or_null(double value) { return std::isnan(value) ? OrderedJson(nullptr) : OrderedJson(value); }

@@ -30,7 +30,7 @@ Json read_json(const std::filesystem::path& file, JsonSource source);
 /// Two spaces of indentation, arrays of plain values on one line. Throws Error naming the key of a non-finite number.
 std::string json_text(const OrderedJson& document);
 
-/// json_text() in an atomically written file.
+/// json_text() in a durably written file.
 void write_json(const std::filesystem::path& file, const OrderedJson& document);
 
 /// null for NaN, the number otherwise.

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <set>
 
-#include "app/atomic_write.hpp"
 #include "app/files/csv_table.hpp"
 #include "app/files/series_columns.hpp"
 #include "app/one_line.hpp"
+#include "dem/durable_file.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
@@ -156,7 +156,7 @@ class SeriesReader {
 std::string series_text(const std::vector<Observation>& rows) { return table_text(rows, observation_columns()); }
 
 void write_series(const std::filesystem::path& file, const std::vector<Observation>& rows) {
-  write_atomically(file, series_text(rows));
+  dem::write_durably(file, series_text(rows));
 }
 
 std::vector<Observation> read_series(const std::filesystem::path& file, const Path& path, const PackingInfo& packing) {
@@ -164,7 +164,7 @@ std::vector<Observation> read_series(const std::filesystem::path& file, const Pa
 }
 
 void write_prediction_series(const std::filesystem::path& file, const std::vector<predict::PredictedRow>& rows) {
-  write_atomically(file, table_text(rows, prediction_columns()));
+  dem::write_durably(file, table_text(rows, prediction_columns()));
 }
 
 std::vector<predict::PredictedRow> read_prediction_series(const std::filesystem::path& file) {

@@ -1,12 +1,15 @@
 // Content-addressed runs: keys, store, and the two kinds of run with very small packings.
 #include "app/runs.hpp"
 
+#include <map>
 #include <thread>
 
 #include "app/dataset_runs.hpp"
+#include "app/digest.hpp"
 #include "app/files/preparation_json.hpp"
 #include "app/files/series_csv.hpp"
 #include "app/new_packings.hpp"
+#include "app/preparation_folder.hpp"
 #include "dem/state_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -84,7 +87,7 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
 
 TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
   const RunStore store(folder_, "runs");
-  const Json record = ensure_preparation(store, tiny(), {});
+  const Json record = ensure_preparation(store, tiny(), {}, {});
   const std::string key = record.at("key");
   EXPECT_EQ(record.at("states").size(), 1u);
   const fs::path state = store.folder(key) / kept_file(Branch::unloading, 0.74);
@@ -93,28 +96,28 @@ TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
 
   const auto written = fs::last_write_time(store.folder(key) / "run.json");
   const std::string bytes = content(state);
-  EXPECT_EQ(ensure_preparation(store, tiny(), {}), record);
+  EXPECT_EQ(ensure_preparation(store, tiny(), {}, {}), record);
   EXPECT_EQ(fs::last_write_time(store.folder(key) / "run.json"), written);
 
   std::string damaged = bytes;
   damaged[damaged.size() / 2] ^= 1;
   put("runs/" + key + "/" + state.filename().string(), damaged);
   EXPECT_FALSE(store.find(key));
-  ensure_preparation(store, tiny(), {});
+  ensure_preparation(store, tiny(), {}, {});
   EXPECT_EQ(content(state), bytes);  // the same bits again
 
   fs::remove(store.folder(key) / "run.json");  // as if killed before the end
   put("runs/" + key + "/leftover", "x");
   EXPECT_FALSE(store.find(key));
-  ensure_preparation(store, tiny(), {});
+  ensure_preparation(store, tiny(), {}, {});
   EXPECT_FALSE(fs::exists(store.folder(key) / "leftover"));
 }
 
 TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
   const RunStore store(folder_, "runs");
-  ensure_preparation(store, tiny(), {});
+  ensure_preparation(store, tiny(), {}, {});
   TestStart start{tiny(), 20, {}, "", false};
-  const Json record = ensure_test(store, start, d2(), {});
+  const Json record = ensure_test(store, start, d2(), {}, {});
   const fs::path series = store.folder(record.at("key")) / "series.csv";
   const auto rows = read_series(series, d2(), packing_from_record(record));
   EXPECT_EQ(rows.size(), 21u);
@@ -126,8 +129,118 @@ TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
   const std::string bytes = content(series);
   fs::remove(store.folder(record.at("key")) / "run.json");
   start.preparation.engine.threads = 2;
-  ensure_test(store, start, d2(), {});
+  ensure_test(store, start, d2(), {}, {});
   EXPECT_EQ(content(series), bytes);
+}
+
+/// Stops the work after some checkpoints; with interval 0 that is after as many steps.
+class Interruption {
+ public:
+  explicit Interruption(int after) : left_(after) {}
+  RunControl control() {
+    return {[this](const Progress&) {
+              if (--left_ <= 0) source_.request_stop();
+            },
+            source_.get_token()};
+  }
+
+ private:
+  int left_;
+  std::stop_source source_;
+};
+
+std::map<std::string, std::string> results(const fs::path& run) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::directory_iterator(run)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "run.json") files[name] = sha256_of_file(entry.path());
+  }
+  return files;
+}
+
+// Hard cases R6, R10, R11: an interrupted run goes on from its checkpoint, or from the one before a damaged one, and ends
+// as the uninterrupted one does. Damage to what it had yielded makes it start anew.
+TEST_F(Runs, GoOnFromTheirCheckpoints) {
+  fs::create_directory(folder_ / "whole");
+  const RunStore whole(folder_ / "whole", "runs");
+  const std::string key = ensure_preparation(whole, tiny(), {}, {}).at("key");
+  const auto expected = results(whole.folder(key));
+  ASSERT_EQ(expected.size(), 3u);
+
+  const RunStore store(folder_, "runs");
+  const fs::path run = store.folder(key);
+  std::vector<std::string> log;
+  ResumePolicy policy{true, 0, [&](const std::string& text) { log.push_back(text); }};
+  const auto interrupt_twice = [&] {
+    for (int i = 0; i < 2; ++i) {
+      Interruption interruption(4);
+      policy.checkpoint_interval = 0;
+      EXPECT_THROW(ensure_preparation(store, tiny(), policy, interruption.control()), Interrupted);
+    }
+    policy.checkpoint_interval = 60;
+    ASSERT_TRUE(fs::exists(run / kCheckpoint));
+    ASSERT_TRUE(fs::exists(run / kPreviousCheckpoint));
+    log.clear();
+  };
+  const auto damage = [&](const std::string& name) {
+    std::string bytes = content(run / name);
+    bytes[bytes.size() / 2] ^= 4;
+    put("runs/" + key + "/" + name, bytes);
+  };
+
+  interrupt_twice();
+  EXPECT_EQ(ensure_preparation(store, tiny(), policy, {}).at("warnings"), whole.find(key)->at("warnings"));
+  EXPECT_EQ(results(run), expected);
+  ASSERT_EQ(log.size(), 1u);
+  EXPECT_TRUE(log[0].starts_with("goes on from the checkpoint at step")) << log[0];
+
+  fs::remove(run / "run.json");
+  interrupt_twice();
+  damage(kCheckpoint);
+  ensure_preparation(store, tiny(), policy, {});
+  EXPECT_EQ(results(run), expected);
+  ASSERT_EQ(log.size(), 2u);
+  EXPECT_NE(log[0].find("its checksum does not fit"), std::string::npos) << log[0];
+
+  fs::remove(run / "run.json");
+  interrupt_twice();
+  damage(kCheckpoint);
+  damage(kPreviousCheckpoint);
+  ensure_preparation(store, tiny(), policy, {});
+  EXPECT_EQ(results(run), expected);
+  EXPECT_EQ(log.size(), 2u) << "two damaged files, nothing to go on from";
+
+  fs::remove(run / "run.json");
+  interrupt_twice();
+  put("runs/" + key + "/" + kProgress, R"({"states": [], "warnings": [], "files": {"loading.csv": "0"}})");
+  ensure_preparation(store, tiny(), policy, {});
+  EXPECT_EQ(results(run), expected);
+  EXPECT_NE(log.back().find("starts anew"), std::string::npos);
+
+  fs::remove(run / "run.json");
+  interrupt_twice();
+  policy.resume = false;
+  ensure_preparation(store, tiny(), policy, {});
+  EXPECT_EQ(results(run), expected);
+  EXPECT_TRUE(log.empty());
+}
+
+TEST_F(Runs, DoNotTakeTheCheckpointOfAnother) {
+  const RunStore store(folder_, "runs");
+  ensure_preparation(store, tiny(), {}, {});
+  const TestStart start{tiny(), 20, {}, "", false};
+  const auto interrupted = [&](const Path& path) {
+    Interruption interruption(2);
+    EXPECT_THROW(ensure_test(store, start, path, {true, 0, {}}, interruption.control()), Interrupted);
+    return store.folder(run_key(test_request(start, path))) / kCheckpoint;
+  };
+  Path longer = d2();
+  longer.segments[0].extent = 0.03;
+  fs::copy_file(interrupted(longer), interrupted(d2()), fs::copy_options::overwrite_existing);
+  std::vector<std::string> log;
+  ensure_test(store, start, d2(), {true, 0, [&](const std::string& text) { log.push_back(text); }}, {});
+  ASSERT_FALSE(log.empty());
+  EXPECT_NE(log[0].find("is of another run"), std::string::npos) << log[0];
 }
 
 TEST_F(Runs, StoreBelongsToOneProcess) {

@@ -1,9 +1,4 @@
-// one_line, digest, atomic_write, output_folder: parts of a few lines each.
-#include <sys/resource.h>
-
-#include <csignal>
-
-#include "app/atomic_write.hpp"
+// one_line, digest, output_folder: parts of a few lines each.
 #include "app/digest.hpp"
 #include "app/one_line.hpp"
 #include "app/output_folder.hpp"
@@ -33,40 +28,6 @@ TEST_F(Files, DigestOfAFileIsThatOfItsBytes) {
   const std::string bytes(200000, 'x');
   EXPECT_EQ(sha256_of_file(put("f", bytes)), sha256(bytes));
   EXPECT_THROW(sha256_of_file(folder_ / "none"), Error);
-}
-
-TEST_F(Files, AreReplacedWhole) {
-  put("f", "old");
-  write_atomically(folder_ / "f", "new content");
-  EXPECT_EQ(content(folder_ / "f"), "new content");
-  copy_atomically(folder_ / "f", folder_ / "g");
-  EXPECT_EQ(content(folder_ / "g"), "new content");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 2);
-}
-
-TEST_F(Files, AreNotWrittenThroughLinks) {
-  put("victim", "untouched");
-  fs::create_symlink(folder_ / "victim", folder_ / "f");
-  write_atomically(folder_ / "f", "ours");
-  EXPECT_EQ(content(folder_ / "victim"), "untouched");
-  EXPECT_FALSE(fs::is_symlink(folder_ / "f"));
-}
-
-// Hard case R8: a write that fails leaves the earlier file and nothing else.
-TEST_F(Files, SurviveAFailingWrite) {
-  put("f", "old");
-  const auto earlier = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit limit{}, small{};
-  getrlimit(RLIMIT_FSIZE, &limit);
-  small = limit;
-  small.rlim_cur = 1000;
-  setrlimit(RLIMIT_FSIZE, &small);
-  EXPECT_THROW(write_atomically(folder_ / "f", std::string(100000, 'x')), Error);
-  setrlimit(RLIMIT_FSIZE, &limit);
-  std::signal(SIGXFSZ, earlier);
-  EXPECT_EQ(content(folder_ / "f"), "old");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 1);
-  EXPECT_THROW(write_atomically(folder_ / "none" / "f", "x"), Error);
 }
 
 // Hard case S6.

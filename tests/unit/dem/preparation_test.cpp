@@ -154,7 +154,7 @@ TEST(Preparation, StopsOnRequestAndNamesItsStages) {
     stages.push_back(progress.stage);
     if (progress.stage == "loading") stop.request_stop();
   };
-  PreparationSink sink{[](const KeptState&) {}, [](Branch, const std::vector<Observation>&) {}, {}};
+  PreparationSink sink{[](const KeptState&) {}, [](Branch, const std::vector<Observation>&) {}, {}, {}};
   EXPECT_THROW(prepare(small_options(), sink, control), Interrupted);
   EXPECT_EQ(stages.front(), "random gas");
   EXPECT_EQ(stages.back(), "loading");

@@ -1,0 +1,83 @@
+#!/usr/bin/env bash
+# tests/acceptance/ground.sh [--quick]: what makes the ground firm, one line each:
+#   NAME VALUE BOUND ok|short          exit 0 only if none is short
+# --quick: hard cases but the long ones, restart points, hashes over threads, the referee. Otherwise also the long hard
+# cases, kills and injected faults, full disks, mutants, coverage, and the paper-size example (reused from
+# build/acceptance/ when finished).
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cd "$here/../.."
+# shellcheck source=tests/acceptance/figures.sh
+. "$here/figures.sh"
+quick=no
+case $#:${1:-} in
+  0:) ;;
+  1:--quick) quick=yes ;;
+  *) sed -n 's/^# //; 2,7p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
+
+./install-packages.sh >&2
+cmake --preset release --log-level=WARNING >&2
+cmake --build build/release --parallel "$(nproc)" >&2
+bin=build/release/bin
+out=$PWD/build/acceptance
+mkdir -p "$out"
+
+# A value that a script or test printed as "NAME VALUE", "missing" otherwise.
+value_of() { # name file
+  awk -v name="$1" '$1 == name { value = $2 } END { print value == "" ? "missing" : value }' "$2"
+}
+
+# Each line of hard_cases.txt is run; a case counts as passed when all its tests ran and passed.
+hard_cases() {
+  local id executable filter listed=0 passed=0 log
+  : >"$out/hard_cases.figures"
+  while read -r id executable filter; do
+    [[ -z $id || $id == \#* ]] && continue
+    filter=${filter//\'/}
+    [[ $quick == yes && $executable == long ]] && continue
+    listed=$((listed + 1))
+    if log=$("$bin/$executable" --gtest_filter="$filter" 2>&1) && grep -q '^\[  PASSED  \] [1-9]' <<<"$log" &&
+       ! grep -q '^\[  SKIPPED \]' <<<"$log"; then
+      passed=$((passed + 1))
+    else
+      figure "hard_case.$id" failed stated
+    fi
+    grep '^figure ' <<<"$log" >>"$out/hard_cases.figures" || true
+    grep '^count ' <<<"$log" | sed 's/^count //' >>"$out/hard_cases.figures" || true
+  done <"$here/hard_cases.txt"
+  while read -r _ name value bound; do figure "$name" "$value" "<=$bound"; done \
+    < <(grep '^figure ' "$out/hard_cases.figures" | sort -u -k2,2)
+  figure hard_cases.listed "$listed" stated
+  figure hard_cases.passed "$passed" ">=$listed"
+  figure restart_points.bitwise "$(value_of R5.restart_points "$out/hard_cases.figures")" ">=100"
+}
+
+# Runs one of tests/survival; its log is kept.
+survival() { # script VARIABLE=value...
+  env GRAINLAW_SOURCE_DIR="$PWD" "${@:2}" tests/in_fresh_directory.sh "$PWD/tests/survival/$1.sh" "$PWD/$bin/grainlaw" \
+    2>"$out/$1.log" >"$out/$1.txt" || tail -3 "$out/$1.log" >&2
+}
+
+mishaps() {
+  survival kills KILLS=200
+  figure kills.survived "$(value_of kills.survived "$out/kills.txt")" ">=200"
+  survival faults FAULTS=500
+  local injected sound
+  injected=$(value_of faults.injected "$out/faults.txt")
+  sound=$(value_of faults.sound "$out/faults.txt")
+  figure faults.injected "$injected" ">=500"
+  figure faults.corrupt "$(awk -v i="$injected" -v s="$sound" 'BEGIN { print i == "missing" ? i : i - s }')" "<=0"
+  survival full_disk
+  figure disks.full "$(value_of disks.full "$out/full_disk.txt")" ">=3"
+  survival signals SIGNALS=24 PAPER_SIZE=yes
+  figure signals.interrupted "$(value_of signals.interrupted "$out/signals.txt")" ">=12"
+  figure signals.slowest_exit_seconds "$(value_of signals.slowest_exit_seconds "$out/signals.txt")" "<=2"
+}
+
+hard_cases
+if [[ $quick == no ]]; then
+  mishaps
+fi
+finish_figures
