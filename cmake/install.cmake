@@ -12,7 +12,9 @@ foreach(room IN ITEMS model dem fit predict)
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     INCLUDES DESTINATION ${installed_headers})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/ DESTINATION ${installed_headers}/${room}
-    FILES_MATCHING PATTERN *.hpp)
+    FILES_MATCHING PATTERN *.hpp
+    # private to dem: they show the JSON library
+    PATTERN sealed_file.hpp EXCLUDE PATTERN state_record.hpp EXCLUDE)
 endforeach()
 install(EXPORT grainlaw-targets NAMESPACE grainlaw:: DESTINATION ${installed_package})
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dem/sealed_file.hpp"
-#include "dem/state_file.hpp"
+#include "dem/state_record.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::dem {

@@ -1,12 +1,9 @@
 #pragma once
-// The file of a kept state (layout of the envelope: dem/sealed_file.hpp).
-//   header: particles, step, seed, digest, has_accelerations, has_list_reference
-//   numbers: material, time, ledger, sums, H and ref_H by rows; radius, mass, s, v; a (if has_accelerations) and
-//   reference fractions (if has_list_reference), each array whole; ids. SI units, in the order of dem/state.hpp.
+// The file of a kept state. Layout: dem/sealed_file.hpp (envelope), dem/state_record.hpp (content).
 
+#include <cstdint>
 #include <filesystem>
 
-#include "dem/sealed_file.hpp"
 #include "dem/state.hpp"
 
 namespace grainlaw::dem {
@@ -19,10 +16,5 @@ void write_state(const std::filesystem::path& file, const State& state);
 
 /// The state bit for bit as written. Throws InvalidInput naming file and reason: damaged, other version, out of bounds.
 State read_state(const std::filesystem::path& file);
-
-/// A state as part of another file: its keys of the header, its numbers, and both read back and checked.
-nlohmann::json state_header(const State& state);
-void put_state(const State& state, NumberWriter& numbers);
-State take_state(const nlohmann::json& header, NumberReader& numbers);
 
 }  // namespace grainlaw::dem

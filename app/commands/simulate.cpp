@@ -81,6 +81,18 @@ OrderedJson end_values(const Observation& row) {
   return values;
 }
 
+/// Why values of that row are null, by name.
+OrderedJson reasons_of(const OrderedJson& values) {
+  OrderedJson reasons = OrderedJson::object();
+  for (const auto& value : values.items()) {
+    if (!value.value().is_null()) continue;
+    reasons[value.key()] = value.key() == "C_star" ? "no sphere has four contacts"
+                           : value.key() == "s_dev" ? "the pressure is not positive"
+                                                    : "it is not defined without spheres in contact";
+  }
+  return reasons;
+}
+
 /// Cell of end.csv, as TEST's key `cell` takes it.
 OrderedJson cell_to_json(const Eigen::Matrix3d& H) {
   OrderedJson rows = OrderedJson::array();
@@ -127,6 +139,7 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
     summary["cell"] = cell_to_json(end.H);
   }
   summary["end"] = end_values(rows.back());
+  summary["undefined"] = reasons_of(summary["end"]);
   summary["cost"] = OrderedJson(record.at("cost"));
   summary["warnings"] = OrderedJson(record.at("warnings"));
   summary["files"] = files;

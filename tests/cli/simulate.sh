@@ -28,3 +28,10 @@ awk -v a="$(pressure path/simulation.json)" -v b="$(pressure result.json)" 'BEGI
   || fail "P* of the table $(pressure result.json), of the state $(pressure path/simulation.json)"
 "$grainlaw" simulate spheres.json -o spheres --json --quiet >again.json
 cmp <(grep '"run"' result.json) <(grep '"run"' again.json) || fail "another run"
+
+# two spheres that do not touch: what has no value is null, with the reason (hard case D21)
+printf 'id,x,y,z,r,vx,vy,vz\n0,0.001,0.001,0.001,0.001,0,0,0\n1,0.006,0.006,0.006,0.001,0,0,0\n' >apart.csv
+echo '{"spheres": "apart.csv", "cell": [[0.01,0,0],[0,0.01,0],[0,0,0.01]]}' >apart.json
+"$grainlaw" simulate apart.json -o apart --json --quiet >result.json
+jq -e '.end.s_dev == null and .undefined.s_dev == "the pressure is not positive" and .end.C_star == null and
+       .undefined.C_star == "no sphere has four contacts" and .end["P_star"] == 0' result.json >/dev/null || fail "$(jq -c '.end, .undefined' result.json)"
