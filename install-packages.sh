@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
-# Installs those packages of debian-packages.txt that are missing, as root or through sudo.
-# Does nothing, and needs no rights, when all are there.
+# install-packages.sh [--full]: installs those packages of debian-packages.txt that are missing, as root or through
+# sudo; with --full those of debian-packages-full.txt too. Does nothing, and needs no rights, when all are there.
 set -euo pipefail
 
-list=$(dirname "${BASH_SOURCE[0]}")/debian-packages.txt
+here=$(dirname "${BASH_SOURCE[0]}")
+lists=("$here/debian-packages.txt")
+case $#:${1:-} in
+  0:) ;;
+  1:--full) lists+=("$here/debian-packages-full.txt") ;;
+  *) sed -n 's/^# //; 2,3p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  echo "install-packages: not a Debian system; using what is installed. Needed: see $list" >&2
+  echo "install-packages: not a Debian system; using what is installed. Needed: see ${lists[*]}" >&2
   exit 0
 fi
 
@@ -15,7 +21,7 @@ while read -r package _; do
   [[ -z $package || $package == \#* ]] && continue
   status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
   [[ $status == installed ]] || missing+=("$package")
-done <"$list"
+done < <(cat "${lists[@]}")
 ((${#missing[@]})) || exit 0
 
 as_root=()

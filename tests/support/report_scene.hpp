@@ -121,7 +121,7 @@ inline app::PredictionFolder make_prediction(const std::string& name, double nu,
   app::PredictionFolder folder;
   folder.name = name;
   folder.dem.emplace();
-  for (const std::uint64_t seed : {11, 12}) {
+  for (const std::uint64_t seed : {11u, 12u}) {
     TestRecord test =
         make_test("UNI-seed" + std::to_string(seed), seed, nu, {segment_of(Mode::UNI, ExtentKind::target_nu, 0.82)});
     fill_rows(test, p, 150, generator);
@@ -165,7 +165,7 @@ inline app::report::ReportInput report_scene() {
   evolution.converged = true;
   evolution.termination = "CONVERGENCE";
   double wobble = 1;
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1u, 2u}) {
     const std::string tag = "-seed" + std::to_string(seed);
     TestRecord loading =
         make_test("ISO-loading" + tag, seed, 0.64, {segment_of(Mode::ISO, ExtentKind::target_nu, 0.82)});

@@ -293,7 +293,7 @@ PredictionFolder small_prediction(const std::filesystem::path& folder) {
   content.path = test.path;
   const auto segments = resolve(test.path);
   const auto law = testing::synthetic_truth();
-  for (const std::uint64_t seed : {3, 4}) {
+  for (const std::uint64_t seed : {3u, 4u}) {
     PredictedCurve curve{
         predict::Model::evolution, Initial::measured, seed, fmt::format("evolution-measured-s{}.csv", seed), {}};
     curve.prediction =

@@ -85,9 +85,14 @@ TEST(Packing, CheckNamesSphereAndQuantity) {
   }
   EXPECT_NE(message([](Packing& p) { p.sx.pop_back(); }).find("length"), std::string::npos);
   EXPECT_NE(message([](Packing& p) { p.id.pop_back(); }).find("length"), std::string::npos);
-  for (const auto& [row, column, value] : std::vector<std::tuple<int, int, double>>{
-           {1, 0, 1e-3}, {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0}, {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}}) {
-    EXPECT_NE(message([&](Packing& p) { p.H(row, column) = value; }).find("cell"), std::string::npos);
+  struct Entry {
+    int row, column;
+    double value;
+  };
+  const std::vector<Entry> bad_entries{{1, 0, 1e-3},  {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0},
+                                       {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}};
+  for (const Entry& bad : bad_entries) {
+    EXPECT_NE(message([&](Packing& p) { p.H(bad.row, bad.column) = bad.value; }).find("cell"), std::string::npos);
   }
 }
 
