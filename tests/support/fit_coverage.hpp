@@ -152,22 +152,23 @@ inline Coverage coverage_of_steady_laws(int sets, std::uint64_t first_seed) {
   return coverage;
 }
 
-/// All that the coupled fit frees, from six packings: ISO unloading, D2 at four densities, D2->ISO.
+/// All that the coupled fit frees, from five packings: ISO unloading, and D2 and D2->ISO at four densities. (Were there one
+/// D2->ISO for each of six packings, 91 % would be covered of a2: 1.96 errors from six runs are 89 % by Student.)
 inline Coverage coverage_of_evolution(int sets, std::uint64_t first_seed) {
   const LawParameters<double> truth = interior_truth();
   SyntheticOptions options;
   options.rows = 12;
   SyntheticDataset maker(truth, options);
   std::vector<TestRecord> clean;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     clean.push_back(maker.isotropic_unloading(seed));
     for (const double nu : {0.68, 0.71, 0.75, 0.80}) {
       clean.push_back(maker.test(fmt::format("d2-{}-s{}", nu, seed), seed, nu,
                                  {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.25)}));
+      clean.push_back(maker.test(fmt::format("d2-iso-{}-s{}", nu, seed), seed, nu,
+                                 {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.15),
+                                  synthetic_segment(Mode::ISO, ExtentKind::target_nu, nu + 0.03)}));
     }
-    clean.push_back(maker.test(fmt::format("d2-iso-s{}", seed), seed, 0.72,
-                               {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.15),
-                                synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.75)}));
   }
   fit::CalibrationOptions calibration;
   calibration.max_step = 2e-2;  // its error, 1e-5, is far below the noise
