@@ -32,6 +32,13 @@ figures_of_tests() { # executable gtest-filter expected-name-prefix...
   done
 }
 
+# Largest relative difference between our curve and the published one where the density lies in [from, to].
+curve_error() { # calibration.json quantity from to
+  jq -r --arg quantity "$2" --argjson from "$3" --argjson to "$4" '
+    [.curves[] | select(.quantity == $quantity and .nu >= $from - 1e-9 and .nu <= $to + 1e-9)
+               | (.ours - .published) / .published | fabs] | if length > 0 then max else "missing" end' "$1"
+}
+
 finish_figures() {
   if ((short_figures > 0)); then
     echo "$short_figures figures are short" >&2

@@ -76,8 +76,45 @@ mishaps() {
   figure signals.slowest_exit_seconds "$(value_of signals.slowest_exit_seconds "$out/signals.txt")" "<=2"
 }
 
+# Forces and short paths beside LAMMPS; its bounds are the test's own.
+referee() {
+  if ! command -v lmp >/dev/null; then
+    figure LAMMPS missing stated
+    return
+  fi
+  figures_of_tests $bin/referee '*' LAMMPS.force_error LAMMPS.P_star LAMMPS.C_star
+}
+
+mutants() {
+  tests/mutants/run.sh >"$out/mutants.txt" 2>"$out/mutants.log" || tail -3 "$out/mutants.log" >&2
+  local caught sown
+  caught=$(awk '$1 == "mutants.caught" { print $2 }' "$out/mutants.txt")
+  sown=$(awk '$1 == "mutants.caught" { print $4 }' "$out/mutants.txt")
+  figure mutants.sown "${sown:-missing}" ">=40"
+  figure mutants.caught_percent "$(awk -v c="${caught:-x}" -v s="${sown:-0}" 'BEGIN { print s > 0 ? 100 * c / s : "missing" }')" ">=95"
+}
+
+coverage() {
+  tests/coverage.sh >"$out/coverage.txt" 2>"$out/coverage.log" || tail -3 "$out/coverage.log" >&2
+  figure coverage.lines "$(value_of coverage.lines "$out/coverage.txt")" ">=90"
+}
+
+paper_size() {
+  local folder=$out/paper-size
+  if [[ ! -s $folder/report.html ]]; then examples/paper-size/run.sh "$folder" >"$out/paper-size.txt"; fi
+  local calibration=$folder/calibration.json
+  figure paper_size.C_star.error "$(curve_error "$calibration" C_star 0.70 0.82)" "<=0.02"
+  figure paper_size.P_star.error "$(curve_error "$calibration" P_star 0.72 0.82)" "<=0.04"
+  figure paper_size.P_star.error.at_0.70 "$(curve_error "$calibration" P_star 0.70 0.70)" "<=0.08"
+  figure paper_size.seconds "$(sed -n 's/^Whole chain after the build: \([0-9]*\) s.*/\1/p' "$out/paper-size.txt")" stated
+}
+
 hard_cases
+referee
 if [[ $quick == no ]]; then
   mishaps
+  paper_size
+  coverage
+  mutants
 fi
 finish_figures

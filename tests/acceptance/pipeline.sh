@@ -33,13 +33,6 @@ hard_cases() {
   fi
 }
 
-# Largest relative difference between our curve and the published one where the density lies in [from, to].
-curve_error() { # calibration.json quantity from to
-  jq -r --arg quantity "$2" --argjson from "$3" --argjson to "$4" '
-    [.curves[] | select(.quantity == $quantity and .nu >= $from - 1e-9 and .nu <= $to + 1e-9)
-               | (.ours - .published) / .published | fabs] | if length > 0 then max else "missing" end' "$1"
-}
-
 quickstart() {
   local out=$PWD/build/acceptance/quickstart cost=build/acceptance/quickstart.cost
   mkdir -p build/acceptance

