@@ -4,30 +4,7 @@
 # Finished simulations in OUT are reused: a second run takes seconds.
 set -euo pipefail
 
-out=$(realpath -m "${1:-grainlaw-quickstart}")
-cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-
-./install-packages.sh
-cmake --preset release --log-level=WARNING
-cmake --build build/release --target grainlaw --parallel "$(nproc)"
-
-mkdir -p "$out"
-cost=$(mktemp)
-trap 'rm -f "$cost"' EXIT
-
-# Runs grainlaw and notes its seconds and peak memory in kB.
-grainlaw() {
-  echo "== grainlaw $*" >&2
-  command time --quiet --append --output "$cost" --format '%e %M' build/release/bin/grainlaw "$@"
-}
-
-inputs=examples/quickstart
-grainlaw calibrate "$inputs/spec.json" -o "$out"
-for path in "$inputs"/uniaxial-*.json; do
-  grainlaw predict "$out/parameters.json" "$path" --dem -o "$out/predictions/$(basename "$path" .json)"
-done
-summary=$(grainlaw report "$out" -o "$out/report.html")
-
-awk '{ seconds += $1; if ($2 > peak) peak = $2 }
-     END { printf "\nWhole chain after the build: %.0f s, peak memory %.0f MB\n\n", seconds, peak / 1024 }' "$cost"
-printf '%s\n' "$summary"
+here=$(dirname "${BASH_SOURCE[0]}")
+# shellcheck source=examples/chain.sh
+. "$here/../chain.sh"
+run_chain "$here" "${1:-grainlaw-quickstart}"

@@ -1,0 +1,36 @@
+# Sourced by the examples' run.sh: the chain on the inputs of one folder.
+
+# run_chain INPUTS OUT: installs what is missing, builds Release, then spec.json -> law, every other JSON file of INPUTS ->
+# prediction beside new DEM, all of it -> report. The summary goes to standard output.
+run_chain() {
+  local inputs out cost path summary
+  inputs=$(realpath "$1")
+  out=$(realpath -m "$2")
+  cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+  ./install-packages.sh
+  cmake --preset release --log-level=WARNING
+  cmake --build build/release --target grainlaw --parallel "$(nproc)"
+
+  mkdir -p "$out"
+  cost=$(mktemp)
+  # shellcheck disable=SC2064 # the name of now
+  trap "rm -f '$cost'" EXIT
+
+  # Runs grainlaw and notes its seconds and peak memory in kB.
+  grainlaw() {
+    echo "== grainlaw $*" >&2
+    command time --quiet --append --output "$cost" --format '%e %M' build/release/bin/grainlaw "$@"
+  }
+
+  grainlaw calibrate "$inputs/spec.json" -o "$out"
+  for path in "$inputs"/*.json; do
+    if [[ $path == */spec.json ]]; then continue; fi
+    grainlaw predict "$out/parameters.json" "$path" --dem -o "$out/predictions/$(basename "$path" .json)"
+  done
+  summary=$(grainlaw report "$out" -o "$out/report.html")
+
+  awk '{ seconds += $1; if ($2 > peak) peak = $2 }
+       END { printf "\nWhole chain after the build: %.0f s, peak memory %.0f MB\n\n", seconds, peak / 1024 }' "$cost"
+  printf '%s\n' "$summary"
+}
