@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # tests/acceptance/pipeline.sh [--quick]: the figures that the whole chain must show, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
-# --quick: hard cases only. Otherwise also the quickstart (reused from build/acceptance/ when finished), time step and
-# rate at one density, and the cost of the chain.
+# --quick: hard cases only. Otherwise also the quickstart and the modes of driving (both reused from build/acceptance/ when
+# finished), and the cost of the chain.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -62,7 +62,7 @@ quickstart() {
 hard_cases
 if [[ $quick == no ]]; then
   quickstart
-  "$here/step_and_rate.sh" "$bin/grainlaw" build/acceptance/quickstart >build/acceptance/step_and_rate.txt
-  while read -r name value; do figure "$name" "$value" stated; done <build/acceptance/step_and_rate.txt
+  "$here/driving_modes.sh" "$bin/grainlaw" build/acceptance/driving_modes >build/acceptance/driving_modes.txt
+  while read -r name value; do figure "driving.$name" "$value" stated; done <build/acceptance/driving_modes.txt
 fi
 finish_figures
