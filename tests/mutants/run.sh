@@ -1,0 +1,203 @@
+#!/usr/bin/env bash
+# tests/mutants/run.sh [--list | --check | --only ID | --sample N]: do the tests notice faults in physics and law?
+# Sows each fault of tests/mutants/*.txt (--sample: N of them, evenly spaced) into a copy of HEAD in build/mutants/ and
+# runs the default suite up to its first failure, the room's own tests first. Prints "mutant ID caught|survived|invalid
+# by TEST" and at last "mutants.caught N of M"; exit code 0 if none is invalid and 95 % are caught. Finished ones are
+# kept in build/mutants/results.txt and not run again for the same sources. --check: do all apply and compile?
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+root=$(cd "$here/../.." && pwd)
+mode=run argument=
+case $#:${1:-} in
+  0:) ;;
+  1:--list | 1:--check) mode=${1#--} ;;
+  2:--only | 2:--sample) mode=${1#--} argument=$2 ;;
+  *) sed -n 's/^# //; 2,6p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
+work=$root/build/mutants
+tree=$work/tree            # a clone of its own, so that nothing here can touch the sources
+build=$tree/build/release
+results=$work/results.txt
+jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
+seconds=600                # a fault may turn a loop endless
+memory_kB=8000000          # or a list
+die() { echo "mutants: $*" >&2; exit 1; }
+
+# --- The list ------------------------------------------------------------------------------------
+ids=() files=() reasons=() olds=() news=()
+read_list() {
+  local line n=-1 newline=$'\n' entry='^([a-z]+\.[A-Za-z0-9_]+) ([^ :]+): (.+)$'
+  while IFS= read -r line; do
+    if [[ $line =~ $entry ]]; then
+      n=${#ids[@]}
+      [[ " ${ids[*]} " != *" ${BASH_REMATCH[1]} "* ]] || die "${BASH_REMATCH[1]} is listed twice"
+      ids+=("${BASH_REMATCH[1]}") files+=("${BASH_REMATCH[2]}") reasons+=("${BASH_REMATCH[3]}") olds+=("") news+=("")
+    elif [[ $line == '- '* ]]; then
+      olds[n]+=${olds[n]:+$newline}${line:2}
+    elif [[ $line == '+'* ]]; then
+      news[n]+=${news[n]:+$newline}${line:2}
+    elif [[ -n $line && $line != '#'* ]]; then
+      die "cannot read '$line'"
+    fi
+  done < <(cat "$here"/*.txt)
+}
+
+select_mutants() {
+  local i n=${#ids[@]}
+  selected=()
+  case $mode in
+    only)
+      for i in "${!ids[@]}"; do [[ ${ids[i]} != "$argument" ]] || selected+=("$i"); done
+      ((${#selected[@]})) || die "no mutant is called $argument; see --list"
+      ;;
+    sample)
+      [[ $argument =~ ^[1-9][0-9]*$ ]] || die "--sample needs a number, not '$argument'"
+      if ((argument > n)); then argument=$n; fi
+      for ((i = 0; i < argument; ++i)); do selected+=($((i * n / argument))); done
+      ;;
+    *) selected=("${!ids[@]}") ;;
+  esac
+}
+
+# --- The copy ------------------------------------------------------------------------------------
+copy_sources() {
+  mkdir -p "$work/logs" "$work/scratch"
+  [[ -d $tree ]] || git clone -q --shared "$root" "$tree"
+  git -C "$tree" fetch -q "$root" HEAD
+  git -C "$tree" checkout -q --force --detach FETCH_HEAD
+  source_digest=$(git -C "$tree" ls-tree -r HEAD -- CMakeLists.txt cmake model dem fit predict app tests examples docs |
+    grep -vE $'\ttests/(mutants|acceptance|long)/' | sha256sum)
+  source_digest=${source_digest%% *}
+}
+
+replaced() { # index -> the text of its file with the fault; fails unless the old text occurs exactly once
+  local text before after
+  text=$(<"$tree/${files[$1]}")
+  before=${text%%"${olds[$1]}"*}
+  [[ -n ${olds[$1]} && $before != "$text" ]] || die "${ids[$1]}: its old text does not occur in ${files[$1]}"
+  after=${text#*"${olds[$1]}"}
+  [[ $after != *"${olds[$1]}"* ]] || die "${ids[$1]}: its old text occurs more than once in ${files[$1]}"
+  printf '%s\n' "$before${news[$1]}$after"
+}
+
+sow() { # index
+  local text
+  text=$(replaced "$1")
+  printf '%s\n' "$text" >"$tree/${files[$1]}"
+}
+
+restore() { git -C "$tree" checkout -q -- "${files[$1]}"; }
+
+compile() { # log target...
+  cmake --build "$build" --parallel "$jobs" ${2:+--target "${@:2}"} >"$1" 2>&1
+}
+
+# --- The tests -----------------------------------------------------------------------------------
+tests_of() { # room -> its own test executables
+  local kind
+  for kind in unit verification; do
+    if compgen -G "$tree/tests/$kind/$1/*.cpp" >/dev/null; then echo "${kind}_$1"; fi
+  done
+}
+
+# Sets first_failure to the name of the first failing test of an executable; empty when all pass.
+run_executable() { # log name
+  local status=0
+  first_failure=
+  (cd "$work/scratch" && ulimit -v "$memory_kB" && timeout "$seconds" "$build/bin/$2" --gtest_fail_fast) >"$1" 2>&1 || status=$?
+  ((status)) || return 0
+  first_failure=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' "$1" | head -n 1)
+  [[ -n $first_failure ]] || first_failure="$(sed -n 's/^\[ RUN      \] //p' "$1" | tail -n 1) (ended with $status)"
+  first_failure=$2.$first_failure
+}
+
+run_suite() { # log
+  local status=0
+  first_failure=
+  (ulimit -v "$memory_kB" && ctest --test-dir "$build" -LE '^long$' --stop-on-failure --output-on-failure --parallel "$jobs" --timeout "$seconds") \
+    >"$1" 2>&1 || status=$?
+  ((status)) || return 0
+  first_failure=$(sed -n '/^The following tests FAILED:/,$ s/^[[:space:]]*[0-9]* - \([^ ]*\).*/\1/p' "$1" | head -n 1)
+  first_failure=${first_failure:-ctest (ended with $status)}
+}
+
+judge() { # index; sets verdict and by
+  local room=${files[$1]%%/*} log=$work/logs/${ids[$1]} name
+  local -a own
+  mapfile -t own < <(tests_of "$room")
+  verdict=invalid by=-
+  compile "$log.build" "${own[@]}" || return 0
+  for name in "${own[@]}"; do
+    run_executable "$log.$name" "$name"
+    if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; return 0; fi
+  done
+  compile "$log.build" || return 0
+  run_suite "$log.suite"
+  if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; else verdict=survived by=-; fi
+}
+
+key_of() { # index
+  local key
+  key=$(printf '%s\0' "$source_digest" "${files[$1]}" "${olds[$1]}" "${news[$1]}" | sha256sum)
+  printf '%s' "${key%% *}"
+}
+
+known() { # key -> "ID VERDICT TEST"
+  [[ -f $results ]] && sed -n "s/^$1 //p" "$results" | tail -n 1
+}
+
+# The suite must pass without a fault, else everything would seem to be caught.
+prove_clean() {
+  [[ -z $(known "$source_digest") ]] || return 0
+  run_suite "$work/logs/clean.suite"
+  [[ -z $first_failure ]] || die "the suite fails without any fault: $first_failure (see $work/logs/clean.suite)"
+  echo "$source_digest clean" >>"$results"
+}
+
+# -------------------------------------------------------------------------------------------------
+read_list
+select_mutants
+if [[ $mode == list ]]; then
+  for i in "${selected[@]}"; do printf '%s %s: %s\n' "${ids[i]}" "${files[i]}" "${reasons[i]}"; done
+  exit 0
+fi
+copy_sources
+for i in "${selected[@]}"; do replaced "$i" >/dev/null; done
+(cd "$tree" && cmake --preset release --log-level=WARNING >&2)
+libraries=()
+[[ $mode != check ]] || libraries=(grainlaw_model grainlaw_dem grainlaw_fit grainlaw_predict)
+compile "$work/logs/clean.build" "${libraries[@]}" || die "the sources do not build without a fault: see $work/logs/clean.build"
+
+if [[ $mode == check ]]; then
+  invalid=0
+  for i in "${selected[@]}"; do
+    sow "$i"
+    compile "$work/logs/${ids[i]}.build" "grainlaw_${files[i]%%/*}" ||
+      { echo "mutant ${ids[i]} invalid: see $work/logs/${ids[i]}.build"; invalid=$((invalid + 1)); }
+    restore "$i"
+  done
+  echo "mutants.compiled $((${#selected[@]} - invalid)) of ${#selected[@]}"
+  ((invalid == 0))
+  exit
+fi
+
+prove_clean
+caught=0 invalid=0
+for i in "${selected[@]}"; do
+  key=$(key_of "$i")
+  read -r _ verdict by < <(known "$key" || true) || verdict=
+  if [[ -z ${verdict:-} ]]; then
+    sow "$i"
+    judge "$i"
+    restore "$i"
+    echo "$key ${ids[i]} $verdict $by" >>"$results"
+  fi
+  echo "mutant ${ids[i]} $verdict by $by"
+  case $verdict in
+    caught) caught=$((caught + 1)) ;;
+    invalid) invalid=$((invalid + 1)) ;;
+  esac
+done
+echo "mutants.caught $caught of ${#selected[@]}"
+((invalid == 0 && 100 * caught >= 95 * ${#selected[@]}))
