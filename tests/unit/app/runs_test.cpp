@@ -133,7 +133,8 @@ TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
   EXPECT_EQ(content(series), bytes);
 }
 
-/// Stops the work after some checkpoints; with interval 0 that is after as many steps.
+/// Stops the work after some reports of progress. The first one of each stage comes with its first step, further ones by
+/// the clock: a single stage may end before its second.
 class Interruption {
  public:
   explicit Interruption(int after) : left_(after) {}
@@ -230,7 +231,7 @@ TEST_F(Runs, DoNotTakeTheCheckpointOfAnother) {
   ensure_preparation(store, tiny(), {}, {});
   const TestStart start{tiny(), 20, {}, "", false};
   const auto interrupted = [&](const Path& path) {
-    Interruption interruption(2);
+    Interruption interruption(1);
     EXPECT_THROW(ensure_test(store, start, path, {true, 0, {}}, interruption.control()), Interrupted);
     return store.folder(run_key(test_request(start, path))) / kCheckpoint;
   };
