@@ -63,6 +63,8 @@ select_mutants() {
 # --- The copy ------------------------------------------------------------------------------------
 copy_sources() {
   mkdir -p "$work/logs" "$work/scratch"
+  exec 9>"$work/lock"
+  flock -n 9 || die "another run works in $work"
   [[ -d $tree ]] || git clone -q --shared "$root" "$tree"
   git -C "$tree" fetch -q "$root" HEAD
   git -C "$tree" checkout -q --force --detach FETCH_HEAD
