@@ -133,20 +133,19 @@ TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
   EXPECT_EQ(content(series), bytes);
 }
 
-/// Stops the work after some reports of progress. The first one of each stage comes with its first step, further ones by
-/// the clock: a single stage may end before its second.
+/// Stops the work soon after it has begun or continued a stage. Each stage reports its first step.
 class Interruption {
  public:
-  explicit Interruption(int after) : left_(after) {}
+  explicit Interruption(std::string stage) : stage_(std::move(stage)) {}
   RunControl control() {
-    return {[this](const Progress&) {
-              if (--left_ <= 0) source_.request_stop();
+    return {[this](const Progress& progress) {
+              if (progress.stage == stage_) source_.request_stop();
             },
             source_.get_token()};
   }
 
  private:
-  int left_;
+  std::string stage_;
   std::stop_source source_;
 };
 
@@ -174,7 +173,7 @@ TEST_F(Runs, GoOnFromTheirCheckpoints) {
   ResumePolicy policy{true, 0, [&](const std::string& text) { log.push_back(text); }};
   const auto interrupt_twice = [&] {
     for (int i = 0; i < 2; ++i) {
-      Interruption interruption(4);
+      Interruption interruption("loading");
       policy.checkpoint_interval = 0;
       EXPECT_THROW(ensure_preparation(store, tiny(), policy, interruption.control()), Interrupted);
     }
@@ -231,7 +230,7 @@ TEST_F(Runs, DoNotTakeTheCheckpointOfAnother) {
   ensure_preparation(store, tiny(), {}, {});
   const TestStart start{tiny(), 20, {}, "", false};
   const auto interrupted = [&](const Path& path) {
-    Interruption interruption(1);
+    Interruption interruption("element test");
     EXPECT_THROW(ensure_test(store, start, path, {true, 0, {}}, interruption.control()), Interrupted);
     return store.folder(run_key(test_request(start, path))) / kCheckpoint;
   };
