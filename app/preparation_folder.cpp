@@ -67,7 +67,10 @@ dem::PreparationSink PreparationFolder::sink() {
   dem::PreparationSink sink;
   sink.keep = [this](const dem::KeptState& kept) { keep(kept); };
   sink.series = [this](Branch branch, const std::vector<Observation>& rows) { series(branch, rows); };
-  sink.warn = [this](const std::string& warning) { warn(warning); };
+  sink.warn = [this](const std::string& warning) {
+    warn(warning);
+    save();
+  };
   sink.has = [this](Branch branch, double nu) { return progress_.at("files").contains(kept_file(branch, nu)); };
   return sink;
 }
