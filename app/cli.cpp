@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <functional>
 #include <new>
 #include <thread>
@@ -120,7 +121,7 @@ void add_report(CLI::App& app, Common& common, Task& task) {
 }
 
 int fail(ExitCode code, const std::string& message) {
-  fmt::print(stderr, "grainlaw: {}\n", one_line(message));
+  std::fputs(fmt::format("grainlaw: {}\n", one_line(message)).c_str(), stderr);  // the exit code says it too
   return static_cast<int>(code);
 }
 

@@ -100,6 +100,9 @@ std::string ProgressPrinter::status() const {
   return running.empty() ? text : fmt::format("{} ({})", text, running);
 }
 
+/// Progress that cannot be written is no reason to end the work: errors are ignored.
+void ProgressPrinter::write(const std::string& text) { std::fputs(text.c_str(), out_); }
+
 void ProgressPrinter::print() {
   if (quiet_) return;
   printed_ = Clock::now();
@@ -108,16 +111,16 @@ void ProgressPrinter::print() {
     winsize size{};
     const std::size_t width = ioctl(fileno(out_), TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col - 1u : 79u;
     if (text.size() > width) text.resize(width);
-    fmt::print(out_, "\r{}\x1b[K", text);
+    write(fmt::format("\r{}\x1b[K", text));
     line_shown_ = true;
   } else {
-    fmt::print(out_, "{}\n", text);
+    write(text + "\n");
   }
   std::fflush(out_);
 }
 
 void ProgressPrinter::clear_line() {
-  if (line_shown_) fmt::print(out_, "\r\x1b[K");
+  if (line_shown_) write("\r\x1b[K");
   line_shown_ = false;
 }
 
@@ -132,7 +135,7 @@ void ProgressPrinter::log(const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (quiet_) return;
   clear_line();
-  fmt::print(out_, "grainlaw: {}\n", one_line(text));
+  write(fmt::format("grainlaw: {}\n", one_line(text)));
   std::fflush(out_);
 }
 

@@ -43,6 +43,7 @@ class ProgressPrinter {
   };
 
   void report(std::size_t job, const Progress& progress);
+  void write(const std::string& text);
   void print();
   void clear_line();
   std::string status() const;

@@ -31,4 +31,11 @@ done
 code=0
 "$grainlaw" simulate test.json -o whole --threads 1 --quiet >/dev/full 2>log || code=$?
 ((code == 1)) || fail "/dev/full as standard output: exit code $code"
+
+# Progress and messages that cannot be written change nothing.
+"$grainlaw" simulate test.json -o loud --threads 1 >/dev/null 2>/dev/full || fail "/dev/full as standard error: exit code $?"
+check_finished loud "/dev/full as standard error"
+code=0
+"$grainlaw" simulate none.json -o none 2>/dev/full || code=$?
+((code == 2)) || fail "/dev/full as standard error, no input: exit code $code"
 printf '%s %s\n' disks.full "$full" disks.sound "$sound"
