@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "tests/support/synthetic_dataset.hpp"
 
@@ -41,6 +42,36 @@ TEST(EvolutionFit, TruthHasNoMisfit) {
     Eigen::VectorXd misfit(block.rows());
     ASSERT_TRUE(block.evaluate(x.data(), misfit.data(), nullptr));
     EXPECT_LT(misfit.lpNorm<Eigen::Infinity>(), 2e-8) << block.test;
+  }
+}
+
+// Misfit is law minus data along each axis: data moved by known amounts along two axes show just these, in the rows of
+// their quantity and axis.
+TEST(EvolutionFit, EachAxisHasItsOwnRows) {
+  auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
+  std::erase_if(all, [](const Trajectory& t) { return t.axes.size() != 1; });
+  ASSERT_FALSE(all.empty());
+  Trajectory& sheared = all.front();
+  const Deviator<double> N = sheared.axes.front();
+  Deviator<double> M = Deviator<double>::Unit(N.cwiseAbs().maxCoeff() == std::abs(N[0]) ? 1 : 0);
+  M = (M - N * N.dot(M)).normalized();
+  sheared.axes.push_back(M);
+  for (TrajectoryRow& row : sheared.rows) {
+    row.data.sigma += row.data.P * (0.003 * N + 0.004 * M);
+    row.data.F += 0.01 * N + 0.02 * M;
+  }
+  const EvolutionProblem problem = evolution_problem({sheared}, kTruth, {}, {});
+  std::vector<double> x;
+  for (const FreeParameter& p : problem.parameters) x.push_back(p.start);
+  const ResidualBlock& block = problem.blocks.front();
+  Eigen::VectorXd misfit(block.rows());
+  ASSERT_TRUE(block.evaluate(x.data(), misfit.data(), nullptr));
+  const std::map<std::string, double> expected{
+      {"P_star", 0}, {"s_par", -0.003}, {"s_axis2", -0.004}, {"F_par", -0.01}, {"F_axis2", -0.02}};
+  ASSERT_EQ(block.channels.size(), expected.size());
+  for (const Channel& channel : block.channels) {
+    const auto rows = misfit.segment(channel.first, channel.rows).array();
+    EXPECT_LT((rows - expected.at(channel.quantity)).abs().maxCoeff(), 2e-8) << channel.quantity;
   }
 }
 
