@@ -1,11 +1,12 @@
 # Sourced by the examples' run.sh: the chain on the inputs of one folder.
 
-# run_chain INPUTS OUT: installs what is missing, builds Release, then spec.json -> law, every other JSON file of INPUTS ->
-# prediction beside new DEM, all of it -> report. The summary goes to standard output.
+# run_chain INPUTS OUT OPTION...: installs what is missing, builds Release, then spec.json -> law, every other JSON file of
+# INPUTS -> prediction with these options, all of it -> report. The summary goes to standard output.
 run_chain() {
   local inputs out cost path summary
   inputs=$(realpath "$1")
   out=$(realpath -m "$2")
+  shift 2
   cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
   ./install-packages.sh
@@ -26,7 +27,7 @@ run_chain() {
   grainlaw calibrate "$inputs/spec.json" -o "$out"
   for path in "$inputs"/*.json; do
     if [[ $path == */spec.json ]]; then continue; fi
-    grainlaw predict "$out/parameters.json" "$path" --dem -o "$out/predictions/$(basename "$path" .json)"
+    grainlaw predict "$out/parameters.json" "$path" "$@" -o "$out/predictions/$(basename "$path" .json)"
   done
   summary=$(grainlaw report "$out" -o "$out/report.html")
 

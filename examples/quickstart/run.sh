@@ -7,4 +7,4 @@ set -euo pipefail
 here=$(dirname "${BASH_SOURCE[0]}")
 # shellcheck source=examples/chain.sh
 . "$here/../chain.sh"
-run_chain "$here" "${1:-grainlaw-quickstart}"
+run_chain "$here" "${1:-grainlaw-quickstart}" --dem
