@@ -113,6 +113,27 @@ TEST(StartSimulation, D17DeepOverlapRepels) {
   EXPECT_EQ(sim.force[0][1], -sim.force[1][1]);
 }
 
+// The list is that of the last rebuild, in the cell of that time: another one would be renewed at another time.
+TEST(StartSimulation, AContinuedRunHasTheListOfItsLastRebuild) {
+  scene::Draw draw(5);
+  constexpr double spacing = 2.3e-3;  // about the reach of the list, so that every change of the cell changes the list
+  std::vector<scene::Sphere> spheres;
+  for (int k = 0; k < 216; ++k) {
+    const Eigen::Vector3d cell(k % 6, k / 6 % 6, k / 36);
+    spheres.push_back({1e-3, spacing * cell + draw.vector(-0.1e-3, 0.1e-3)});
+  }
+  Simulation whole = scene::start(scene::state_of(scene::cubic(6 * spacing), spheres));
+  CellMotion end = scene::at_rest(whole.state);
+  end.H(2, 2) *= 0.98;
+  advance(whole, end, end);
+  ASSERT_EQ(whole.rebuilds, 1u);
+  const Simulation continued = start_simulation(whole.state, whole.options, end);
+  EXPECT_EQ(continued.list.first, whole.list.first);
+  EXPECT_EQ(continued.list.j, whole.list.j);
+  EXPECT_EQ(continued.list.image, whole.list.image);
+  EXPECT_NE(scene::start(whole.state).list.j, whole.list.j) << "the cell changes the list";
+}
+
 TEST(Advance, TimeAndStepsAreCounted) {
   Simulation sim = scene::start(touching({1, 0, 0}, {0, 0, 0}));
   scene::advance_at_rest(sim, 7);

@@ -120,6 +120,32 @@ TEST_F(StateFile, ReadsBackBitForBit) {
   EXPECT_EQ(files_in_folder(), 1u) << "a temporary file was left";
 }
 
+// Writing and reading share their order: only the bytes show that it is the documented one.
+TEST_F(StateFile, NumbersStandInTheDocumentedOrder) {
+  const State s = distinct_state(2, true);
+  write_state(file_, s);
+  const Material& m = s.material;
+  const Ledger& l = s.ledger;
+  std::vector<double> expected{m.density, m.stiffness, m.contact_viscosity, m.background_viscosity,
+                               s.time, l.W_box, l.D_contact, l.D_background, l.E_start, l.E_kin_start,
+                               s.sums.box_power, s.sums.contact_power, s.sums.E_pot, s.sums.drag_power};
+  for (const auto* H : {&s.packing.H, &s.ref_H}) {
+    for (int i = 0; i < 9; ++i) expected.push_back((*H)(i / 3, i % 3));  // by rows
+  }
+  const Packing& p = s.packing;
+  for (const auto* a : {&p.radius, &p.mass, &p.sx, &p.sy, &p.sz, &p.vx, &p.vy, &p.vz, &s.ax, &s.ay, &s.az, &s.ref_x,
+                        &s.ref_y, &s.ref_z}) {
+    expected.insert(expected.end(), a->begin(), a->end());
+  }
+  const std::string written = bytes();
+  constexpr std::size_t kChecksum = 32;
+  const std::size_t ids = p.id.size() * 8, length = expected.size() * sizeof(double);
+  ASSERT_GT(written.size(), 16 + length + ids + kChecksum);
+  std::vector<double> stored(expected.size());
+  std::memcpy(stored.data(), written.data() + written.size() - kChecksum - ids - length, length);
+  EXPECT_EQ(stored, expected);
+}
+
 TEST_F(StateFile, AFlippedBitAnywhereIsRefused) {
   write_state(file_, distinct_state(1, true));
   const std::string sound = bytes();

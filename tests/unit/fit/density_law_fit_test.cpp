@@ -49,6 +49,15 @@ TEST(DensityLawFit, RecoversTable3) {
   }
 }
 
+TEST(DensityLawFit, ValuesWeighByTheirOwnMagnitudeAtLeastAFifthOfTheMean) {
+  const DensityLawProblem problem =
+      density_law_problem("stress_rate", {"a", "b", "c"}, {0, 1, 2}, {{0.70, 10}, {0.74, 49}, {0.78, 1}}, 0.6653);
+  ASSERT_EQ(problem.blocks.size(), 3u);
+  EXPECT_NEAR(problem.blocks[0].weight(0), 1. / 10, 1e-15);
+  EXPECT_NEAR(problem.blocks[1].weight(0), 1. / 49, 1e-15);
+  EXPECT_NEAR(problem.blocks[2].weight(0), 1. / 4, 1e-15) << "mean 20";
+}
+
 TEST(DensityLawFit, ThreeDensitiesDetermineTheCurveAndSeedsTheError) {
   LawParameters<double> law = start_parameters();
   const ShearQuantity& s_max = kShearQuantities[0];

@@ -147,6 +147,25 @@ TEST_P(VirtualWork, EngineEqualsThePlainReference) {
   }
 }
 
+// At the end of a step forces are those of predicted velocities; what is measured belongs to the velocities themselves.
+TEST_P(VirtualWork, MeasuredStressEqualsThePlainReferenceAfterSteps) {
+  Draw draw(31);
+  State state = random_overlaps();
+  scene::random_velocities(state.packing, 0.5, draw);
+  const StraightSegment segment = scene::segment_of(direction_of(Mode::D3).tensor, 0.01, volume_fraction(state.packing));
+  const Drive drive = make_drive(segment, {500, Profile::constant, Transport::homogeneous}, state.packing.H);
+  EngineOptions options;
+  options.refuse_deep_overlaps = false;
+  Simulation sim = start_simulation(state, options, motion_at(drive, 0));
+  for (int k = 0; k < 5; ++k) advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+  const CellMotion motion = motion_at(drive, 5 * sim.dt);
+  const Observation seen = observe(sim, motion, Deviator<double>::Zero());
+  const Packing& p = sim.state.packing;
+  const ReferenceSums expected = reference_sums(p, state.material, motion);
+  EXPECT_LE((seen.stress.tensor * p.volume() - expected.virial).norm(), 1e-12 * expected.virial.norm());
+  EXPECT_LE((seen.fabric.tensor - expected.fabric).norm(), 1e-12 * expected.fabric.norm());
+}
+
 INSTANTIATE_TEST_SUITE_P(D20, VirtualWork, ::testing::ValuesIn(scene::families()), scene::name_of_family);
 
 TEST(NewtonsThirdLaw, D6PairForcesAreOppositeToTheLastBit) {

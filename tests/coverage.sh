@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# tests/coverage.sh: which lines of the product code does the default suite reach?
+# Prints "coverage.lines.ROOM PERCENT" for each room and "coverage.lines PERCENT" for all; build/coverage/coverage.txt
+# has the same with every file and its missing lines. Exit code 0 if the suite passed.
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
+folder=build/coverage
+rooms=(model dem fit predict app)
+
+./install-packages.sh --full >&2
+cmake --preset coverage --log-level=WARNING >&2
+cmake --build $folder --parallel "$jobs" >&2
+find $folder -name '*.gcda' -delete  # counts of earlier runs
+ctest --preset coverage --parallel "$jobs" >&2
+
+filters=()
+for room in "${rooms[@]}"; do filters+=(--filter "$room/"); done
+gcovr --root . "${filters[@]}" $folder --txt $folder/files.txt --json-summary $folder/summary.json
+for room in "${rooms[@]}" ''; do
+  jq -r --arg room "$room" '[.files[] | select(.filename | startswith($room))]
+    | "coverage.lines" + (if $room == "" then "" else "." + $room end) + " "
+      + (100 * (map(.line_covered) | add) / (map(.line_total) | add) * 10 | round / 10 | tostring)' $folder/summary.json
+done | tee $folder/coverage.txt
+cat $folder/files.txt >>$folder/coverage.txt
