@@ -38,6 +38,18 @@ check_unfinished() { # folder what
   { find "$1" -name run.json 2>/dev/null || true; } | wc -l
 }
 
+# The same scene at an eighth of the rate, where a mishap must hit the run amid its work; whole_seconds is what the
+# uninterrupted run takes here and now.
+slow_down() {
+  local before
+  sed -i 's/"strain_rate": 8000/"strain_rate": 1000/' test.json
+  rm -rf whole
+  before=$(date +%s.%N)
+  simulate whole >/dev/null
+  whole_seconds=$(awk -v b="$before" -v a="$(date +%s.%N)" 'BEGIN { print a - b }')
+  reference=$(results whole)
+}
+
 simulate whole >/dev/null
 reference=$(results whole)
 [[ $(wc -l <<<"$reference") -ge 6 ]] || fail "the reference run yields too little: $reference"
