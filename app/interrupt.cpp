@@ -22,7 +22,8 @@ extern "C" void on_signal(int) {
   const int saved = errno;
   if (signals_seen.fetch_add(1) > 0) _exit(static_cast<int>(ExitCode::interrupted));
   const char signalled = 's';
-  [[maybe_unused]] const ssize_t written = write(pipe_in, &signalled, 1);
+  while (write(pipe_in, &signalled, 1) < 0 && errno == EINTR) {
+  }
   errno = saved;
 }
 
@@ -58,12 +59,10 @@ InterruptGuard::InterruptGuard() : watch_(new Watch) {
 InterruptGuard::~InterruptGuard() {
   sigaction(SIGINT, &watch_->earlier_int, nullptr);
   sigaction(SIGTERM, &watch_->earlier_term, nullptr);
-  const char quit = 'q';
-  [[maybe_unused]] const ssize_t written = write(watch_->ends[1], &quit, 1);
-  watch_->thread.join();
   pipe_in = -1;
+  close(watch_->ends[1]);  // ends the thread's read, whatever happens to system calls
+  watch_->thread.join();
   close(watch_->ends[0]);
-  close(watch_->ends[1]);
 }
 
 std::stop_token InterruptGuard::token() const { return watch_->source.get_token(); }
