@@ -13,7 +13,8 @@ rooms=(model dem fit predict app)
 cmake --preset coverage --log-level=WARNING >&2
 cmake --build $folder --parallel "$jobs" >&2
 find $folder -name '*.gcda' -delete  # counts of earlier runs
-ctest --preset coverage --parallel "$jobs" >&2
+# a killed process leaves counts half written, so those tests are left out
+ctest --preset coverage --label-exclude "^(long|survival)$" --parallel "$jobs" >&2
 
 filters=()
 for room in "${rooms[@]}"; do filters+=(--filter "$room/"); done
