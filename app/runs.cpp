@@ -67,8 +67,8 @@ Json test_request(const TestStart& start, const Path& path) {
   }
   const Json all = preparation_to_json(start.preparation);
   request["given"] = {{"sha256", start.given_digest}, {"relax", start.relax}};
-  for (const char* key : {"time_step_fraction", "skin", "strain_rate", "driving", "transport", "density", "stiffness",
-                          "contact_viscosity", "background_viscosity"}) {
+  for (const char* key : {"time_step_fraction", "skin", "precision", "portable_bits", "strain_rate", "driving", "transport", "density",
+                          "stiffness", "contact_viscosity", "background_viscosity"}) {
     request["given"][key] = all[key];
   }
   return request;

@@ -43,11 +43,8 @@ ContactSums sum_contacts(const ForceField& field, const std::vector<double>& rad
 
 ContactSums sum_contacts(const Simulation& sim, const CellMotion& motion) {
   const Packing& p = sim.state.packing;
-  std::vector<Row> velocity(p.size());  // the current ones, not those predicted inside the step
-  for (std::size_t i = 0; i < p.size(); ++i) velocity[i] = {p.vx[i], p.vy[i], p.vz[i], 0};
-  const std::vector<Eigen::Vector3d> shift = image_shifts(sim);
-  ForceField field = force_field(sim, motion, shift);
-  field.motion = velocity.data();
+  const std::unique_ptr<ContactView> view = view_contacts(sim, motion);  // current velocities, not those predicted
+  const ForceField& field = view->field;
   std::vector<ContactSums> parts(block_count(p.size()));
   sim.team->for_each_block(parts.size(), [&](std::size_t block) {
     const std::size_t begin = block * kBlockSize, end = std::min(p.size(), begin + kBlockSize);

@@ -44,6 +44,7 @@ State fresh(State state) {
 
 /// Forces for a velocity gradient that has jumped.
 Simulation restarted(Simulation sim, const CellMotion& motion) {
+  synchronise(sim);
   State state = std::move(sim.state);
   for (auto* a : {&state.ax, &state.ay, &state.az}) a->clear();
   return start_simulation(std::move(state), sim.options, motion);
@@ -143,6 +144,7 @@ class TestRun {
     result.time_step = at_.time_step;
     result.seconds = seconds();
     result.rows = std::move(at_.rows);
+    synchronise(sim_);
     result.end = std::move(sim_.state);
     return result;
   }
@@ -206,6 +208,7 @@ class TestRun {
 
   void save() {
     if (!checkpointing_.save) return;
+    synchronise(sim_);
     Checkpoint checkpoint = at_;
     checkpoint.state = sim_.state;
     checkpoint.seconds = seconds();
@@ -242,6 +245,7 @@ class TestRun {
   }
 
   void take_row(const CellMotion& motion, const StraightSegment& on, double e) {
+    synchronise(sim_);
     at_.rows.push_back(observe(sim_, motion, N_));
     Observation& row = at_.rows.back();
     fill_path(row, on, at_.segment, e, sheared_);

@@ -31,9 +31,9 @@ struct ElementTest {
   std::vector<std::string> warnings;  ///< energy residual or inertial number beyond their limits, for the log
 };
 
-/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state. After a
-/// continuation it sees the checkpoint's step once more.
-using StepObserver = std::function<void(const Simulation&, int segment, double e)>;
+/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state, for which it
+/// calls synchronise() first. After a continuation it sees the checkpoint's step once more.
+using StepObserver = std::function<void(Simulation&, int segment, double e)>;
 
 /// Runs `segments` (resolve() of the path at the state's own volume fraction) from `start`; time, step and ledger begin
 /// at zero. Steps per segment are rounded up so that segments end exactly; dt is at most the engine's. A row is taken

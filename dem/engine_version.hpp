@@ -4,6 +4,6 @@
 
 namespace grainlaw::dem {
 
-inline constexpr int kEngineVersion = 1;
+inline constexpr int kEngineVersion = 2;
 
 }  // namespace grainlaw::dem

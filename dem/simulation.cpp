@@ -8,36 +8,66 @@
 #include <limits>
 #include <utility>
 
+#include "dem/lane_engine.hpp"
+#include "dem/lane_list.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
+constexpr double kSmallestSkin = 0.05;  // of lanes in small cells, over the mean radius
+
 std::pair<std::size_t, std::size_t> block_range(std::size_t block, std::size_t n) {
   return {block * kBlockSize, std::min(n, (block + 1) * kBlockSize)};
 }
 
-/// Positions with radii for the force pass, from the fractions and the cell.
-void place_spheres(Simulation& sim, std::size_t begin, std::size_t end) {
-  const Packing& p = sim.state.packing;
+/// Position with radius, from the fractions and the cell.
+Row place_of(const Packing& p, std::size_t i) {
   const Eigen::Matrix3d& H = p.H;
-  const double Hxx = H(0, 0), Hxy = H(0, 1), Hxz = H(0, 2), Hyy = H(1, 1), Hyz = H(1, 2), Hzz = H(2, 2);
-  for (std::size_t i = begin; i < end; ++i) {
-    const double sx = p.sx[i], sy = p.sy[i], sz = p.sz[i];
-    sim.place[i] = {Hxx * sx + Hxy * sy + Hxz * sz, Hyy * sy + Hyz * sz, Hzz * sz, p.radius[i]};
-  }
+  const double sx = p.sx[i], sy = p.sy[i], sz = p.sz[i];
+  return {H(0, 0) * sx + H(0, 1) * sy + H(0, 2) * sz, H(1, 1) * sy + H(1, 2) * sz, H(2, 2) * sz, p.radius[i]};
+}
+
+void place_spheres(Simulation& sim, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) sim.place[i] = place_of(sim.state.packing, i);
+}
+
+/// H n [m] of each image of the list.
+std::vector<Eigen::Vector3d> image_shifts(const Eigen::Matrix3d& H, const NeighbourList& list) {
+  std::vector<Eigen::Vector3d> shift;
+  for (const Eigen::Vector3d& n : list.offset) shift.push_back(H * n);
+  return shift;
+}
+
+/// What sums over the contacts of `sim` read, off lanes; `sim` and `shift` must outlive it.
+ForceField force_field(const Simulation& sim, const CellMotion& motion, const std::vector<Eigen::Vector3d>& shift) {
+  const Packing& p = sim.state.packing;
+  const Material& material = sim.state.material;
+  return {&sim.list,   sim.place.data(), sim.motion.data(),  p.sx.data(),                p.sy.data(),
+          p.sz.data(), shift.data(),     p.id.data(),        p.H,                        motion.L,
+          material.stiffness, material.contact_viscosity,    motion.transport == Transport::wall};
+}
+
+/// Skin of a list made in the cell H [m]: as asked for, but in small cells what lanes still fit with.
+double list_skin(const Simulation& sim, const Eigen::Matrix3d& H) {
+  const double r = mean_radius(sim.state.packing), asked = sim.options.skin * r;
+  const double fitting = 0.49 * H.diagonal().minCoeff() - 2 * sim.list.r_max;
+  return sim.options.precision != Precision::reference && fitting > kSmallestSkin * r ? std::min(asked, fitting) : asked;
+}
+
+void remember_reference(State& state) {
+  wrap(state.packing);
+  state.ref_x = state.packing.sx;
+  state.ref_y = state.packing.sy;
+  state.ref_z = state.packing.sz;
+  state.ref_H = state.packing.H;
 }
 
 /// New list at the current positions, remembered as the reference.
 void rebuild(Simulation& sim) {
   Packing& p = sim.state.packing;
-  wrap(p);
+  remember_reference(sim.state);
   sim.list = build_list(p, sim.list.skin, *sim.team);
-  sim.state.ref_x = p.sx;
-  sim.state.ref_y = p.sy;
-  sim.state.ref_z = p.sz;
-  sim.state.ref_H = p.H;
-  ++sim.rebuilds;
   sim.team->for_each_block(block_count(p.size()), [&](std::size_t block) {
     const auto [begin, end] = block_range(block, p.size());
     place_spheres(sim, begin, end);
@@ -59,7 +89,7 @@ void restore_list(Simulation& sim) {
 template <class After>
 void force_pass(Simulation& sim, const CellMotion& motion, const After& after) {
   const Packing& p = sim.state.packing;
-  const std::vector<Eigen::Vector3d> shift = image_shifts(sim);
+  const std::vector<Eigen::Vector3d> shift = image_shifts(sim.state.packing.H, sim.list);
   const ForceField field = force_field(sim, motion, shift);
   std::vector<PassSums> parts(block_count(p.size()));
   sim.team->for_each_block(parts.size(), [&](std::size_t block) {
@@ -104,7 +134,7 @@ void first_forces(Simulation& sim, const CellMotion& motion) {
 /// between large ones, may stay.
 void refuse_deep_overlaps(const Simulation& sim, const CellMotion& motion) {
   const Packing& p = sim.state.packing;
-  const std::vector<Eigen::Vector3d> shift = image_shifts(sim);
+  const std::vector<Eigen::Vector3d> shift = image_shifts(sim.state.packing.H, sim.list);
   const ForceField field = force_field(sim, motion, shift);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Row &f = sim.force[i], &f_v = sim.viscous[i];
@@ -152,6 +182,62 @@ double kick_and_drift(Simulation& sim, const CellMotion& half, const Eigen::Matr
   return moved2;
 }
 
+/// The first half of a step for all spheres.
+Drifted drift(Simulation& sim, const Eigen::Matrix3d& start_H, const CellMotion& half, const CellMotion& end) {
+  const std::size_t n = sim.state.packing.size();
+  const Eigen::Matrix3d drift = sim.dt * (half.transport == Transport::wall ? end.H : half.H).inverse();
+  const Eigen::Matrix3d carry = end.H.inverse() * start_H;
+  std::vector<double> moved2(block_count(n));
+  sim.team->for_each_block(moved2.size(), [&](std::size_t block) {
+    const auto [first, last] = block_range(block, n);
+    moved2[block] = kick_and_drift(sim, half, drift, carry, first, last);
+    place_spheres(sim, first, last);
+  });
+  double farthest2 = 0;
+  for (const double d2 : moved2) {
+    if (!(d2 < std::numeric_limits<double>::infinity())) return Drifted::lost;
+    farthest2 = std::max(farthest2, d2);
+  }
+  if (n == 0) return Drifted::well;
+  const double allowed = allowed_displacement(sim.list, sim.state.ref_H, end.H);
+  return std::sqrt(farthest2) < allowed ? Drifted::well : Drifted::beyond_list;
+}
+
+bool on_lanes(const Simulation& sim) { return !std::holds_alternative<std::monostate>(sim.lanes); }
+
+/// Goes on with the state itself and the list of its last rebuild.
+void leave_lanes(Simulation& sim) {
+  synchronise(sim);
+  sim.lanes = {};
+  restore_list(sim);
+}
+
+/// New list in the middle of a step; it decides, too, whether the simulation goes on on lanes.
+void renew_list(Simulation& sim, const CellMotion& end) {
+  State& state = sim.state;
+  ++sim.rebuilds;
+  sim.list.skin = list_skin(sim, end.H);
+  const bool suitable = suits_lanes(sim, end);
+  if (on_lanes(sim) && suitable) {
+    state.ref_H = state.packing.H;
+    rearrange_lanes(sim);
+  } else if (suitable) {
+    remember_reference(state);
+    enter_lanes(sim);
+  } else {
+    if (on_lanes(sim)) {
+      synchronise(sim);
+      sim.lanes = {};
+      const double h = sim.dt / 2;
+      const Packing& p = state.packing;
+      for (std::size_t i = 0; i < p.size(); ++i) {
+        sim.motion[i] = {p.vx[i] + h * state.ax[i], p.vy[i] + h * state.ay[i], p.vz[i] + h * state.az[i], 0};
+      }
+    }
+    rebuild(sim);
+  }
+}
+
 /// Second half: kick with the new force, drag treated implicitly.
 void kick(Simulation& sim, std::size_t begin, std::size_t end) {
   State& state = sim.state;
@@ -169,14 +255,18 @@ void kick(Simulation& sim, std::size_t begin, std::size_t end) {
   }
 }
 
-[[noreturn]] void report_lost_sphere(const Packing& p) {
+/// Of a sphere that is nowhere, or that one step would carry farther than any sound one could.
+[[noreturn]] void report_lost_sphere(const Packing& p, double dt) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!std::isfinite(p.sx[i] + p.sy[i] + p.sz[i] + p.vx[i] + p.vy[i] + p.vz[i])) {
-      throw Error(fmt::format("sphere {}: position or velocity is no longer finite; use a smaller time_step_fraction",
-                              p.id[i]));
+    const bool finite = std::isfinite(p.sx[i] + p.sy[i] + p.sz[i] + p.vx[i] + p.vy[i] + p.vz[i]);
+    const double edges = dt * (std::abs(p.vx[i]) / p.H(0, 0) + std::abs(p.vy[i]) / p.H(1, 1) + std::abs(p.vz[i]) / p.H(2, 2));
+    if (!finite || edges > 0.124) {
+      throw Error(fmt::format("energy balance: sphere {}: {}; use a smaller time_step_fraction", p.id[i],
+                              finite ? "crosses more than an eighth of the cell in one step"
+                                     : "position or velocity is no longer finite"));
     }
   }
-  throw Error("a sphere moved farther in one step than numbers can hold; use a smaller time_step_fraction");
+  throw Error("energy balance: a sphere moved farther in one step than numbers can hold; use a smaller time_step_fraction");
 }
 
 }  // namespace
@@ -188,12 +278,16 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
   Packing& p = sim.state.packing;
   p.H = motion.H;
   check(p);
+  if (options.precision == Precision::mixed) {  // all that depends on radii must see the same ones
+    for (double& r : p.radius) r = static_cast<double>(static_cast<float>(r));
+  }
   sim.team = std::make_shared<ThreadTeam>(options.threads);
   const std::size_t n = p.size();
   sim.place.resize(n);
   sim.motion.resize(n);
   sim.force.resize(n);
   sim.viscous.resize(n);
+  const bool continued = sim.state.ax.size() == n && sim.state.ref_x.size() == n && n > 0;
   if (n > 0) {
     sim.dt = options.time_step_fraction * min_collision_time(p, sim.state.material);
     if (!(sim.dt > 0) || !std::isfinite(sim.dt)) {
@@ -202,70 +296,81 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
           "(an overdamped contact has no collision time)");
     }
     if (!(options.skin > 0) || !std::isfinite(options.skin)) throw InvalidInput("skin: must be positive and finite");
-    sim.list.skin = options.skin * mean_radius(p);
+    sim.list.r_max = *std::max_element(p.radius.begin(), p.radius.end());
+    sim.list.skin = list_skin(sim, continued ? sim.state.ref_H : p.H);
   }
-  const bool continued = sim.state.ax.size() == n && sim.state.ref_x.size() == n && n > 0;
-  if (continued) {
+  if (continued && suits_lanes(sim, {sim.state.ref_H, motion.L, motion.transport})) {
+    enter_lanes(sim);
+  } else if (continued) {
     restore_list(sim);
     sim.team->for_each_block(block_count(n), [&](std::size_t block) {
       const auto [begin, end] = block_range(block, n);
       place_spheres(sim, begin, end);
     });
   } else {
+    ++sim.rebuilds;
     rebuild(sim);
     first_forces(sim, motion);
     if (options.refuse_deep_overlaps) refuse_deep_overlaps(sim, motion);
+    if (suits_lanes(sim, motion)) {
+      enter_lanes(sim);
+      synchronise(sim);  // positions and energy as the lanes have them
+    }
   }
   return sim;
 }
 
 void advance(Simulation& sim, const CellMotion& half, const CellMotion& end) {
   State& state = sim.state;
-  Packing& p = state.packing;
-  const std::size_t n = p.size();
   const double h = sim.dt / 2;
-  const double box_power = state.sums.box_power;
-  const double lost_power = state.sums.contact_power;
-  const double drag_power = state.sums.drag_power;
+  const PassSums before = state.sums;
 
-  const Eigen::Matrix3d drift = sim.dt * (half.transport == Transport::wall ? end.H : half.H).inverse();
-  const Eigen::Matrix3d carry = end.H.inverse() * p.H;
-  p.H = end.H;
-  std::vector<double> moved2(block_count(n));
-  sim.team->for_each_block(moved2.size(), [&](std::size_t block) {
-    const auto [first, last] = block_range(block, n);
-    moved2[block] = kick_and_drift(sim, half, drift, carry, first, last);
-    place_spheres(sim, first, last);
-  });
-  double farthest2 = 0;
-  for (const double d2 : moved2) {
-    if (!(d2 < std::numeric_limits<double>::infinity())) report_lost_sphere(p);
-    farthest2 = std::max(farthest2, d2);
+  const Eigen::Matrix3d start_H = state.packing.H;
+  if (on_lanes(sim) && !moves_as_lanes_do(half)) leave_lanes(sim);
+  state.packing.H = end.H;
+  const Drifted how = on_lanes(sim) ? drift_lanes(sim, half) : drift(sim, start_H, half, end);
+  if (how == Drifted::lost) {
+    synchronise(sim);
+    report_lost_sphere(state.packing, sim.dt);
   }
-  const double allowed = allowed_displacement(sim.list, state.ref_H, p.H);
-  if (n > 0 && !(std::sqrt(farthest2) < allowed)) rebuild(sim);
+  if (how == Drifted::beyond_near) repick_near(sim);
+  if (how == Drifted::beyond_list) renew_list(sim, end);
 
-  force_pass(sim, end, [&](std::size_t first, std::size_t last) { kick(sim, first, last); });
+  if (on_lanes(sim)) {
+    state.sums = kick_lanes(sim, end);
+  } else {
+    force_pass(sim, end, [&](std::size_t first, std::size_t last) { kick(sim, first, last); });
+  }
 
   ++state.step;
   state.time += sim.dt;
-  state.ledger.W_box += h * (box_power + state.sums.box_power);
-  state.ledger.D_contact += h * (lost_power + state.sums.contact_power);
-  state.ledger.D_background += h * (drag_power + state.sums.drag_power);
+  state.ledger.W_box += h * (before.box_power + state.sums.box_power);
+  state.ledger.D_contact += h * (before.contact_power + state.sums.contact_power);
+  state.ledger.D_background += h * (before.drag_power + state.sums.drag_power);
 }
 
-std::vector<Eigen::Vector3d> image_shifts(const Simulation& sim) {
-  std::vector<Eigen::Vector3d> shift;
-  for (const Eigen::Vector3d& n : sim.list.offset) shift.push_back(sim.state.packing.H * n);
-  return shift;
-}
-
-ForceField force_field(const Simulation& sim, const CellMotion& motion, const std::vector<Eigen::Vector3d>& shift) {
+std::unique_ptr<ContactView> view_contacts(const Simulation& sim, const CellMotion& motion) {
   const Packing& p = sim.state.packing;
-  const Material& material = sim.state.material;
-  return {&sim.list,   sim.place.data(), sim.motion.data(),  p.sx.data(),                p.sy.data(),
-          p.sz.data(), shift.data(),     p.id.data(),        p.H,                        motion.L,
-          material.stiffness, material.contact_viscosity,    motion.transport == Transport::wall};
+  auto view = std::make_unique<ContactView>();
+  if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) {
+    view->list = plain_list(*mixed, p);
+  } else if (const auto* full = std::get_if<Lanes<double>>(&sim.lanes)) {
+    view->list = plain_list(*full, p);
+  } else {
+    view->list = sim.list;
+  }
+  view->shift = image_shifts(p.H, view->list);
+  view->place.resize(p.size());
+  view->motion.resize(p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    view->place[i] = place_of(p, i);
+    view->motion[i] = {p.vx[i], p.vy[i], p.vz[i], 0};
+  }
+  view->field = force_field(sim, motion, view->shift);
+  view->field.list = &view->list;
+  view->field.place = view->place.data();
+  view->field.motion = view->motion.data();
+  return view;
 }
 
 void open_ledger(Simulation& sim) {

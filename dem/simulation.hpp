@@ -6,17 +6,29 @@
 // order of its sorted neighbours, totals are summed in blocks of fixed size.
 
 #include <memory>
+#include <variant>
 
 #include "dem/force_pass.hpp"
+#include "dem/lanes.hpp"
 #include "dem/neighbour_list.hpp"
 #include "dem/state.hpp"
 #include "dem/thread_team.hpp"
 
 namespace grainlaw::dem {
 
+/// Arithmetic of the time steps. Rows of a series are always summed in double precision.
+enum class Precision {
+  mixed,      ///< positions of 32-bit fixed point, float radii, velocities and forces, totals in double
+  full,       ///< positions of 52-bit fixed point, double forces
+  reference,  ///< double, plain loops; also taken where the others do not fit: cells less than about five spheres
+              ///< wide, sheared cells, wall-driven transport
+};
+
 struct EngineOptions {
   double time_step_fraction = 0.1;  ///< dt/t_c,min of the actual packing [-]
-  double skin = 0.3;                ///< skin of the neighbour list over the mean radius [-]
+  double skin = 0.8;                ///< skin of the neighbour list over the mean radius, less in small cells [-]
+  Precision precision = Precision::mixed;
+  bool portable_bits = false;       ///< the same bits also on machines without fused multiply-add (before AVX2), slowly
   int threads = 1;                  ///< threads of one run
   bool refuse_deep_overlaps = true; ///< of pairs that nothing holds; false to watch them part (hard case D17)
 };
@@ -36,13 +48,15 @@ struct CellMotion {
 
 /// A state in motion: the state plus what can be recomputed from it.
 struct Simulation {
-  State state;
+  State state;              ///< while on lanes, its arrays are as old as the last synchronise(); the rest is current
   EngineOptions options;
   double dt = 0;            ///< time step [s]
   NeighbourList list;
   std::uint64_t rebuilds = 0;      ///< of the list since the start of the simulation
   std::vector<Row> place, motion, force, viscous;  ///< of the force pass: positions with radii, velocities, contact
                                                    ///< forces and their viscous parts
+  std::variant<std::monostate, Lanes<float>, Lanes<double>> lanes;  ///< what is simulated, when not the state itself
+  Eigen::Matrix3d near_H = Eigen::Matrix3d::Zero();  ///< cell when the near ones were picked [m], on lanes
   std::shared_ptr<ThreadTeam> team;
 };
 
@@ -59,11 +73,19 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
 /// sphere when a position or velocity is no longer finite.
 void advance(Simulation& sim, const CellMotion& half, const CellMotion& end);
 
-/// H n [m] of each image of the list.
-std::vector<Eigen::Vector3d> image_shifts(const Simulation& sim);
+/// Brings the arrays of sim.state and its E_pot up to date after advance().
+void synchronise(Simulation& sim);
 
-/// What sums over the contacts of `sim` read; `sim` and `shift` must outlive it. Velocities are those of sim.motion.
-ForceField force_field(const Simulation& sim, const CellMotion& motion, const std::vector<Eigen::Vector3d>& shift);
+/// What sums over the contacts of a simulation read, for the velocities of its state.
+struct ContactView {
+  NeighbourList list;
+  std::vector<Row> place, motion;
+  std::vector<Eigen::Vector3d> shift;
+  ForceField field;  ///< points into the members above and into the simulation
+};
+
+/// Needs sim.state synchronised; sim must outlive the view, which cannot be copied.
+std::unique_ptr<ContactView> view_contacts(const Simulation& sim, const CellMotion& motion);
 
 /// Opens the energy account anew at the current state: ledger zero, E_start taken.
 void open_ledger(Simulation& sim);

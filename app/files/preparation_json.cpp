@@ -26,6 +26,14 @@ std::vector<StraightSegment> isotropic(double from, double to) {
       {from, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to < from), ExtentKind::target_nu, to}}});
 }
 
+const char* name_of(dem::Precision precision) {
+  switch (precision) {
+    case dem::Precision::full: return "double";
+    case dem::Precision::reference: return "reference";
+    default: return "mixed";
+  }
+}
+
 }  // namespace
 
 void read_preparation(const Json& document, dem::PreparationOptions& o) {
@@ -41,11 +49,18 @@ void read_preparation(const Json& document, dem::PreparationOptions& o) {
   take("background_viscosity", o.packing.material.background_viscosity);
   take("time_step_fraction", o.engine.time_step_fraction);
   take("skin", o.engine.skin);
+  take("portable_bits", o.engine.portable_bits);
   take("strain_rate", o.drive.strain_rate);
   take("nu_start", o.nu_start);
   take("nu_max", o.nu_max);
   take("rows", o.rows);
   if (document.contains("nu_end")) o.nu_end = document["nu_end"].get<double>();
+  if (document.contains("precision")) {
+    const Json& name = document["precision"];
+    o.engine.precision = name == "double"      ? dem::Precision::full
+                         : name == "reference" ? dem::Precision::reference
+                                               : dem::Precision::mixed;
+  }
   if (document.contains("driving")) {
     o.drive.profile = document["driving"] == "constant" ? dem::Profile::constant : dem::Profile::cosine;
   }
@@ -65,6 +80,8 @@ OrderedJson preparation_to_json(const dem::PreparationOptions& o) {
           {"background_viscosity", material.background_viscosity},
           {"time_step_fraction", o.engine.time_step_fraction},
           {"skin", o.engine.skin},
+          {"precision", name_of(o.engine.precision)},
+          {"portable_bits", o.engine.portable_bits},
           {"strain_rate", o.drive.strain_rate},
           {"driving", o.drive.profile == dem::Profile::constant ? "constant" : "cosine"},
           {"transport", o.drive.transport == dem::Transport::wall ? "wall" : "homogeneous"},

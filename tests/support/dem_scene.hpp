@@ -5,8 +5,12 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <random>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "dem/drive.hpp"
@@ -92,12 +96,37 @@ inline CellMotion at_rest(const State& state) {
   return {state.packing.H, Eigen::Matrix3d::Zero(), Transport::homogeneous};
 }
 
+/// The precision under test: GRAINLAW_TEST_PRECISION = mixed, full (default) or reference.
+inline Precision precision_under_test() {
+  const char* name = std::getenv("GRAINLAW_TEST_PRECISION");
+  const std::string_view chosen = name != nullptr ? name : "full";
+  if (chosen == "mixed") return Precision::mixed;
+  if (chosen == "reference") return Precision::reference;
+  if (chosen != "full") throw std::invalid_argument("GRAINLAW_TEST_PRECISION: " + std::string(chosen));
+  return Precision::full;
+}
+
+inline EngineOptions engine_options() {
+  EngineOptions options;
+  options.precision = precision_under_test();
+  return options;
+}
+
+/// A pass line for what rounding alone leaves, given for double precision: float rounds 2^29 times as coarsely.
+inline double rounding(double in_double) { return precision_under_test() == Precision::mixed ? in_double * 0x1p29 : in_double; }
+
+/// One step with the state's arrays brought up to date.
+inline void step(Simulation& sim, const CellMotion& half, const CellMotion& end) {
+  advance(sim, half, end);
+  synchronise(sim);
+}
+
 /// The state made ready in a cell at rest, whatever its overlaps. The forces are made anew.
 inline Simulation start(State state, double time_step_fraction = 0.02, int threads = 1) {
   state.ax.clear(), state.ay.clear(), state.az.clear();
   state.ref_x.clear(), state.ref_y.clear(), state.ref_z.clear();
   const CellMotion motion = at_rest(state);
-  EngineOptions options;
+  EngineOptions options = engine_options();
   options.time_step_fraction = time_step_fraction;
   options.threads = threads;
   options.refuse_deep_overlaps = false;
@@ -107,6 +136,7 @@ inline Simulation start(State state, double time_step_fraction = 0.02, int threa
 inline void advance_at_rest(Simulation& sim, std::int64_t steps) {
   const CellMotion motion = at_rest(sim.state);
   for (std::int64_t k = 0; k < steps; ++k) advance(sim, motion, motion);
+  synchronise(sim);
 }
 
 /// One segment of logarithmic strain `length` * direction from the volume fraction nu.
@@ -129,6 +159,7 @@ inline std::int64_t run_along(Simulation& sim, const Drive& drive) {
     const double end = k + 1 < steps ? (k + 1) * sim.dt : drive.duration;
     advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, end));
   }
+  synchronise(sim);
   return static_cast<std::int64_t>(steps);
 }
 

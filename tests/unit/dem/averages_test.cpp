@@ -21,7 +21,7 @@ struct Pair {
   Simulation simulation() const {
     const Eigen::Vector3d x(7e-3, 8e-3, 9e-3);
     return start_simulation(
-        scene::state_of(scene::cubic(kEdge), {{1e-3, x + distance() * n, v}, {1.5e-3, x}}, material), EngineOptions{},
+        scene::state_of(scene::cubic(kEdge), {{1e-3, x + distance() * n, v}, {1.5e-3, x}}, material), scene::engine_options(),
         motion);
   }
 };

@@ -49,7 +49,7 @@ TEST(AffineMotion, D10ThereAndBackInAMillionSteps) {
     const double u = static_cast<double>(k) / static_cast<double>(steps);
     const CellMotion half{deformation(u - 0.5 / static_cast<double>(steps)) * H_0, L, Transport::homogeneous};
     const CellMotion end{deformation(u) * H_0, L, Transport::homogeneous};
-    advance(sim, half, end);
+    scene::step(sim, half, end);
     if (k % (steps / 20) == 0) {
       const Eigen::Matrix3d F = deformation(u);
       for (std::size_t i = 0; i < x_0.size(); ++i) {
@@ -78,7 +78,7 @@ double drift_error(Transport transport, int steps) {
     const Eigen::Vector3d stretch = (a * t).array().exp();
     return CellMotion{stretch.asDiagonal() * H_0, Eigen::Matrix3d(a.asDiagonal()), transport};
   };
-  for (int k = 0; k < steps; ++k) advance(sim, motion((k + 0.5) * sim.dt), motion((k + 1) * sim.dt));
+  for (int k = 0; k < steps; ++k) scene::step(sim, motion((k + 0.5) * sim.dt), motion((k + 1) * sim.dt));
   const Packing& p = sim.state.packing;
   EXPECT_EQ(scene::velocity(p, 0), v);
   Eigen::Vector3d expected;
@@ -110,7 +110,7 @@ TEST(AffineMotion, WallDrivenSphereReentersWithItsVelocity) {
       H(0, 0) *= std::exp(-1e4 * t);
       return CellMotion{H, L, Transport::wall};
     };
-    advance(sim, motion((k + 0.5) * sim.dt), motion((k + 1) * sim.dt));
+    scene::step(sim, motion((k + 0.5) * sim.dt), motion((k + 1) * sim.dt));
   }
   const Packing& p = sim.state.packing;
   const double edge = p.H(0, 0);

@@ -146,6 +146,7 @@ TEST(ContactNumbersOfFew, D21ElementTestsOfFewSpheres) {
   int wrong = 0;
   std::size_t rows = 0;
   ElementTestOptions options;
+  options.engine = scene::engine_options();
   options.drive.strain_rate = 3000;
   options.rows = 10;
   for (const std::size_t n : {1U, 2U, 3U}) {

@@ -94,6 +94,7 @@ TEST(DeepOverlap, D17ElementTestsRefuseAPairThatNothingHolds) {
       for (const double fraction : {0.02, 0.1}) {
         const State deep = small_inside_big(state, depth, draw);
         ElementTestOptions options;
+        options.engine = scene::engine_options();
         options.engine.time_step_fraction = fraction;
         options.drive.strain_rate = 3000;
         double residual = 0;
@@ -123,6 +124,7 @@ TEST(DeepOverlap, D17ElementTestsAcceptAPairThatIsHeld) {
       scene::state_of(Eigen::Vector3d(edge, 20e-3, 20e-3).asDiagonal(),
                       {{r, {0, 10e-3, 10e-3}}, {0.05e-3, {edge / 2, 10e-3, 10e-3}}}, {2000, 1e8, 0.01, 0.1});
   ElementTestOptions options;
+  options.engine = scene::engine_options();
   options.engine.time_step_fraction = 0.02;
   options.drive.strain_rate = 3000;
   EXPECT_EQ(refusal([&] { run_element_test(held, compression(held), options, {}); }), "");

@@ -38,7 +38,7 @@ Drive uniaxial(const State& state) {
 
 void advance_along(Simulation& sim, const Drive& drive, int from, int to) {
   for (int k = from; k < to; ++k)
-    advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+    scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
 }
 
 TEST(Invariance, SameBitsWhenContinuedFromACopy) {
@@ -118,7 +118,7 @@ TEST(Invariance, SkinOfTheList) {
   const State state = shaken_packing();
   std::vector<Observation> seen;
   for (const double skin : {0.02, 0.1, 1.0}) {
-    EngineOptions options;
+    EngineOptions options = scene::engine_options();
     options.skin = skin;
     Simulation sim = start_simulation(state, options, scene::at_rest(state));
     scene::advance_at_rest(sim, 100);

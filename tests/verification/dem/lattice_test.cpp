@@ -110,7 +110,7 @@ TEST(LatticeEnergy, WorkAndDissipationOfAShrinkingCell) {
         make_drive(scene::segment_of(-Eigen::Matrix3d::Identity(), strain, 0.5), options, scene::cubic(a_0));
     const auto errors = [&](int steps) {
       State state = scene::state_of(scene::cubic(a_0), {{r, {0, 0, 0}}}, {2000, k, gamma, 0.1});
-      Simulation sim = start_simulation(std::move(state), EngineOptions{}, motion_at(drive, 0));
+      Simulation sim = start_simulation(std::move(state), scene::engine_options(), motion_at(drive, 0));
       sim.dt = drive.duration / steps;
       scene::run_along(sim, drive);
       EXPECT_NEAR(sim.state.sums.E_pot - sim.state.ledger.E_start, stored, 1e-11 * stored);

@@ -90,7 +90,7 @@ TEST_P(PairListOfFamily, D19AlongARunThatShearsAndCollapses) {
   };
   long missed = 0;
   for (int k = 0; k < steps; ++k) {
-    advance(sim, motion(k + 0.5), motion(k + 1));
+    scene::step(sim, motion(k + 0.5), motion(k + 1));
     if (k % 50 == 0) missed += scene::contacts_missed(sim.list, sim.state.packing);
   }
   figure(scene::figure_name("D19.missed_in_collapse", GetParam()), static_cast<double>(missed), 0);

@@ -35,6 +35,7 @@ PathSegment segment(Mode mode, double extent, bool reverse = false) {
 
 ElementTestOptions options_of(double time_step_fraction, double strain_rate, int rows) {
   ElementTestOptions options;
+  options.engine = scene::engine_options();
   options.engine.time_step_fraction = time_step_fraction;
   options.check_time_step = false;
   options.drive.strain_rate = strain_rate;
@@ -66,7 +67,8 @@ std::size_t first_beyond(const std::vector<double>& values, double limit) {
   return static_cast<std::size_t>(beyond - values.begin());
 }
 
-/// The row at which a run was stopped by its energy balance; nothing when it went through to its end.
+/// The row at which a run was stopped by its energy balance, 0 when a step was beyond all bounds before the first row;
+/// nothing when it went through to its end.
 std::optional<std::size_t> row_of_stop(const State& start, const std::vector<StraightSegment>& path,
                                        const ElementTestOptions& options) {
   try {
@@ -76,6 +78,7 @@ std::optional<std::size_t> row_of_stop(const State& start, const std::vector<Str
   } catch (const Error& error) {
     const std::string message = error.what();
     EXPECT_TRUE(message.starts_with("energy balance")) << message;
+    if (message.find("crosses more than an eighth of the cell") != std::string::npos) return 0;
     const std::size_t row = message.find(" at row ");
     EXPECT_NE(row, std::string::npos) << message;
     return std::stoul(message.substr(row + 8));
@@ -144,6 +147,7 @@ TEST(RunSafeguards, D9ProductionAtTheDefaultStep) {
     for (const double nu : {0.70, 0.80}) {
       const State start = scene::jammed({"Paper", 3, 0}, 200, nu, seed);
       ElementTestOptions options;
+      options.engine = scene::engine_options();
       options.rows = 50;
       const ElementTest test = run_element_test(start, path_of(start, {segment(Mode::UNI, 0.01)}), options, {});
       const std::vector<double> judged = judged_residuals(test.rows);
@@ -235,6 +239,7 @@ TEST(RunSafeguards, D25InertialNumber) {
       for (const double rate : {100.0, 2000.0}) {
         const auto path = path_of(start, {segment(mode, 0.01)});
         ElementTestOptions options;
+        options.engine = scene::engine_options();
         options.drive.strain_rate = rate;
         options.rows = 40;
         options.stop_energy_residual = 1e300;  // another matter

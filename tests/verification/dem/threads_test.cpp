@@ -40,7 +40,7 @@ Bits bits_of(const Observation& row) {
 }
 
 EngineOptions engine_of(int threads) {
-  EngineOptions engine;
+  EngineOptions engine = scene::engine_options();
   engine.threads = threads;
   return engine;
 }
@@ -79,7 +79,7 @@ TEST(Threads, R1DrivenRunWithRebuilds) {
     open_ledger(sim);
     Trace trace;
     for (int k = 0; k < 80; ++k) {
-      advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+      scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
       if (k % 2 == 0) continue;
       trace.push_back(bits_of(sim.state));
       const Bits seen = bits_of(observe(sim, motion_at(drive, (k + 1) * sim.dt), Deviator<double>::Zero()));
@@ -112,6 +112,7 @@ TEST(Threads, R1ElementTestWithACorner) {
                               {Mode::UNI, direction_of(Mode::UNI), ExtentKind::eps_vol, 0.005}}});
   compare("element_test", 22, [&](int threads) {
     ElementTestOptions options;
+    options.engine = scene::engine_options();
     options.engine.threads = threads;
     options.drive.strain_rate = 3000;
     options.rows = 10;

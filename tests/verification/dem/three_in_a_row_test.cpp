@@ -143,7 +143,8 @@ TEST(ThreeInARow, D5MirrorImageBitwise) {
     scene::advance_at_rest(a, 1);
     scene::advance_at_rest(b, 1);
     for (std::size_t i = 0; i < 3; ++i) {
-      different += a.state.packing.sx[i] != 1.5 - b.state.packing.sx[i] ? 1 : 0;
+      const double sum = a.state.packing.sx[i] + b.state.packing.sx[i];  // exact, up to whole cells
+      different += sum - std::floor(sum) != 0.5 ? 1 : 0;
       different += a.state.packing.vx[i] != -b.state.packing.vx[i] ? 1 : 0;
     }
   }

@@ -117,7 +117,7 @@ TEST_P(VirtualWork, EngineEqualsThePlainReference) {
     CellMotion motion = scene::at_rest(state);
     motion.transport = transport;
     motion.L << -120, 70, 40, 0, 90, -60, 0, 0, -30;
-    EngineOptions options;
+    EngineOptions options = scene::engine_options();
     options.refuse_deep_overlaps = false;
     const Simulation sim = start_simulation(state, options, motion);
     const Observation seen = observe(sim, motion, Deviator<double>::Zero());
@@ -154,10 +154,10 @@ TEST_P(VirtualWork, MeasuredStressEqualsThePlainReferenceAfterSteps) {
   scene::random_velocities(state.packing, 0.5, draw);
   const StraightSegment segment = scene::segment_of(direction_of(Mode::D3).tensor, 0.01, volume_fraction(state.packing));
   const Drive drive = make_drive(segment, {500, Profile::constant, Transport::homogeneous}, state.packing.H);
-  EngineOptions options;
+  EngineOptions options = scene::engine_options();
   options.refuse_deep_overlaps = false;
   Simulation sim = start_simulation(state, options, motion_at(drive, 0));
-  for (int k = 0; k < 5; ++k) advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+  for (int k = 0; k < 5; ++k) scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
   const CellMotion motion = motion_at(drive, 5 * sim.dt);
   const Observation seen = observe(sim, motion, Deviator<double>::Zero());
   const Packing& p = sim.state.packing;

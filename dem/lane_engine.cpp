@@ -1,0 +1,149 @@
+#include "dem/lane_engine.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "dem/lane_list.hpp"
+#include "dem/lane_state.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+constexpr double kRounding = 1e-5;  // of distances in single precision
+constexpr double kNearSkin = 0.15;  // of the list's skin: measured, docs/performance.md
+
+double near_skin(const Simulation& sim) { return kNearSkin * sim.list.skin; }  // [m]
+
+/// Calls visit(lanes) with the lanes of the simulation, which must be on them.
+template <class Visit>
+auto with_lanes(Simulation& sim, const Visit& visit) {
+  if (auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) return visit(*mixed);
+  return visit(std::get<Lanes<double>>(sim.lanes));
+}
+
+bool diagonal(const Eigen::Matrix3d& m) { return m.isDiagonal(0); }
+
+std::array<double, 3> edges(const Eigen::Matrix3d& H, const Units& unit) {
+  return {H(0, 0) / unit.length, H(1, 1) / unit.length, H(2, 2) / unit.length};
+}
+
+template <class Real>
+LaneStep step_of(const Simulation& sim, const Lanes<Real>& lanes) {
+  const Units& unit = lanes.unit;
+  const Material& material = sim.state.material;
+  LaneStep step;
+  step.half_dt = sim.dt / 2 / unit.time;
+  step.stiffness = material.stiffness / (unit.mass / unit.time / unit.time);
+  step.viscosity = material.contact_viscosity / (unit.mass / unit.time);
+  step.drag = material.background_viscosity / (unit.mass / unit.time);
+  step.edge = edges(sim.state.packing.H, unit);
+  step.portable_bits = sim.options.portable_bits;
+  return step;
+}
+
+/// Calls work(block, begin, end) for the groups of each block of spheres.
+template <class Real, class Work>
+void for_each_block_of_groups(const Simulation& sim, const Lanes<Real>& lanes, const Work& work) {
+  constexpr std::size_t per_block = kBlockSize / kLanes;
+  sim.team->for_each_block(block_count(lanes.spheres), [&](std::size_t block) {
+    work(block, block * per_block, std::min(lanes.group.size(), (block + 1) * per_block));
+  });
+}
+
+template <class Real>
+void refresh_rows(const Simulation& sim, Lanes<Real>& lanes) {
+  const LaneStep step = step_of(sim, lanes);
+  for_each_block_of_groups(sim, lanes, [&](std::size_t, std::size_t begin, std::size_t end) { write_rows(lanes, step, begin, end); });
+}
+
+}  // namespace
+
+bool moves_as_lanes_do(const CellMotion& motion) {
+  return motion.transport == Transport::homogeneous && diagonal(motion.H) && diagonal(motion.L);
+}
+
+bool suits_lanes(const Simulation& sim, const CellMotion& motion) {
+  const Eigen::Matrix3d& H = motion.H;
+  return sim.options.precision != Precision::reference && moves_as_lanes_do(motion) && sim.state.packing.size() > 0 &&
+         fits_lanes({H(0, 0), H(1, 1), H(2, 2)}, 2 * sim.list.r_max + sim.list.skin);
+}
+
+void enter_lanes(Simulation& sim) {
+  if (sim.options.precision == Precision::mixed) {
+    sim.lanes = make_lanes<float>(sim.state, sim.dt, sim.list.skin, near_skin(sim), *sim.team);
+  } else {
+    sim.lanes = make_lanes<double>(sim.state, sim.dt, sim.list.skin, near_skin(sim), *sim.team);
+  }
+  with_lanes(sim, [&](auto& lanes) { refresh_rows(sim, lanes); });
+  repick_near(sim);
+}
+
+Drifted drift_lanes(Simulation& sim, const CellMotion& half) {
+  return with_lanes(sim, [&]<class Real>(Lanes<Real>& lanes) {
+    LaneStep step = step_of(sim, lanes);
+    const std::array<double, 3> edge = edges(half.H, lanes.unit);
+    for (std::size_t a = 0; a < 3; ++a) step.drift[a] = 2 * step.half_dt / edge[a] * kQuantaPerEdge<Real>;
+    const auto allowed = [&](const Eigen::Matrix3d& since, double skin, double other_skin) {
+      const double stretch = std::min(1.0, (sim.state.packing.H.diagonal().array() / since.diagonal().array()).minCoeff());
+      const double touch = 2 * sim.list.r_max + other_skin;
+      return (stretch * (2 * sim.list.r_max + skin) - touch) / 2 * (1 - kRounding) / lanes.unit.length;
+    };
+    step.allowed = allowed(sim.state.ref_H, sim.list.skin, near_skin(sim));
+    step.near_allowed = allowed(sim.near_H, near_skin(sim), 0);
+    std::vector<Drifted> how(block_count(lanes.spheres));
+    for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      how[block] = kick_and_drift(lanes, step, begin, end);
+    });
+    return *std::max_element(how.begin(), how.end());
+  });
+}
+
+void repick_near(Simulation& sim) {
+  sim.near_H = sim.state.packing.H;
+  with_lanes(sim, [&](auto& lanes) {
+    const std::array<double, 3> edge = edges(sim.near_H, lanes.unit);
+    const double skin = near_skin(sim) / lanes.unit.length;
+    for_each_block_of_groups(sim, lanes,
+                             [&](std::size_t, std::size_t begin, std::size_t end) { pick_near(lanes, edge, skin, begin, end); });
+  });
+}
+
+void rearrange_lanes(Simulation& sim) {
+  with_lanes(sim, [&](auto& lanes) {
+    const double length = lanes.unit.length;
+    arrange(lanes, edges(sim.state.packing.H, lanes.unit), sim.list.skin / length, near_skin(sim) / length, *sim.team);
+    refresh_rows(sim, lanes);
+  });
+  repick_near(sim);
+}
+
+PassSums kick_lanes(Simulation& sim, const CellMotion& end) {
+  return with_lanes(sim, [&]<class Real>(Lanes<Real>& lanes) {
+    const Units& unit = lanes.unit;
+    LaneStep step = step_of(sim, lanes);
+    for (int a = 0; a < 3; ++a) step.rate[static_cast<std::size_t>(a)] = end.L(a, a) * unit.time;
+    std::vector<LaneSums> parts(block_count(lanes.spheres));
+    for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t first, std::size_t last) {
+      parts[block] = force_and_kick(lanes, step, first, last);
+    });
+    LaneSums sum;
+    for (const LaneSums& part : parts) {
+      sum.box_power += part.box_power;
+      sum.contact_power += part.contact_power;
+      sum.v2 += part.v2;
+    }
+    const double speed = unit.length / unit.time, power = unit.mass * speed * speed / unit.time;
+    return PassSums{sum.box_power * power, sum.contact_power * power, sim.state.sums.E_pot,
+                    sim.state.material.background_viscosity * sum.v2 * speed * speed};
+  });
+}
+
+void synchronise(Simulation& sim) {
+  if (std::holds_alternative<std::monostate>(sim.lanes)) return;
+  with_lanes(sim, [&](const auto& lanes) {
+    store_lanes(lanes, sim.state);
+    sim.state.sums.E_pot = 0.25 * sim.state.material.stiffness * sum_squared_overlaps(lanes, sim.state.packing.H);
+  });
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,28 @@
+#pragma once
+// The two halves of a time step on lanes (dem/lanes.hpp), for a Simulation that runs on them.
+
+#include "dem/lane_pass.hpp"
+#include "dem/simulation.hpp"
+
+namespace grainlaw::dem {
+
+/// Whether lanes know this motion: a rectangular cell that moves its spheres with it.
+bool moves_as_lanes_do(const CellMotion& motion);
+
+/// Whether a simulation in this motion can run on lanes; its cell must be large enough, too.
+bool suits_lanes(const Simulation& sim, const CellMotion& motion);
+
+/// Puts the simulation on lanes; accelerations and the list's reference must be known.
+void enter_lanes(Simulation& sim);
+
+/// First half of a step: kick, drift.
+Drifted drift_lanes(Simulation& sim, const CellMotion& half);
+
+/// New near ones or a new list at the present positions, in the middle of a step.
+void repick_near(Simulation& sim);
+void rearrange_lanes(Simulation& sim);
+
+/// Second half: forces and kick. Returns the totals of the state at its end, E_pot as it was.
+PassSums kick_lanes(Simulation& sim, const CellMotion& end);
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,318 @@
+#include "dem/lane_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "dem/lane_pass.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+constexpr double kRounding = 1e-6;        // of the distances that the search computes in single precision
+constexpr std::size_t kWindow = 512;      // spheres that are sorted by number of neighbours
+constexpr int kMaxBinsPerAxis = 1024;
+
+using Index3 = std::array<std::uint32_t, 3>;
+
+/// The leading 32 bits of a position, as a fraction of the edge.
+std::int32_t leading(std::int32_t x) { return x; }
+std::int32_t leading(std::int64_t x) { return static_cast<std::int32_t>(x >> 32); }
+
+/// All spheres sorted by bins of the cell, in a bin by index.
+struct Spatial {
+  std::vector<std::int32_t> x, y, z;  // padded, as is reach
+  std::vector<float> reach;
+  std::vector<std::uint32_t> from;    // lane before
+  std::vector<std::uint32_t> sphere;
+  Index3 bins{1, 1, 1};
+  std::vector<std::size_t> start;     // of each bin, and the end
+  std::array<float, 3> edge{};
+
+  std::size_t at(std::size_t bx, std::size_t by, std::size_t bz) const { return (bz * bins[1] + by) * bins[0] + bx; }
+  std::uint32_t bin_along(std::size_t axis, std::int32_t position) const {
+    return static_cast<std::uint32_t>(std::uint64_t{static_cast<std::uint32_t>(position)} * bins[axis] >> 32);
+  }
+};
+
+template <class Real>
+Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin) {
+  const std::size_t n = lanes.spheres;
+  const auto reach_of = [&](const SphereGroup<Real>& group, std::size_t l) {
+    return (static_cast<double>(group.radius[l]) + skin / 2) * (1 + kRounding);
+  };
+  Spatial s;
+  double farthest = 0;
+  for (std::size_t i = 0; i < n; ++i) farthest = std::max(farthest, reach_of(lanes.group[i / kLanes], i % kLanes));
+  const double cutoff = 2 * farthest * (1 + kRounding);
+  const double per_axis = std::cbrt(static_cast<double>(n)) + 1;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double fit = std::min({edge[a] / cutoff, 4 * per_axis, double{kMaxBinsPerAxis}});
+    s.bins[a] = static_cast<std::uint32_t>(std::max(1.0, fit));
+    s.edge[a] = static_cast<float>(edge[a] * 0x1p-32);
+  }
+  s.start.assign(s.at(0, 0, s.bins[2]) + 1, 0);
+  std::vector<std::uint32_t> bin(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const SphereGroup<Real>& group = lanes.group[i / kLanes];
+    const std::size_t l = i % kLanes;
+    bin[i] = static_cast<std::uint32_t>(s.at(s.bin_along(0, leading(group.x[l])), s.bin_along(1, leading(group.y[l])),
+                                             s.bin_along(2, leading(group.z[l]))));
+    ++s.start[bin[i] + 1];
+  }
+  std::partial_sum(s.start.begin(), s.start.end(), s.start.begin());
+  s.from.resize(n);
+  std::vector<std::size_t> next(s.start.begin(), s.start.end() - 1);
+  for (std::size_t i = 0; i < n; ++i) s.from[next[bin[i]]++] = static_cast<std::uint32_t>(i);
+  const auto sphere_at = [&](std::uint32_t lane) { return lanes.group[lane / kLanes].sphere[lane % kLanes]; };
+  for (std::size_t b = 0; b + 1 < s.start.size(); ++b) {
+    std::sort(s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b]), s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b + 1]),
+              [&](std::uint32_t p, std::uint32_t q) { return sphere_at(p) < sphere_at(q); });
+  }
+  for (auto* v : {&s.x, &s.y, &s.z}) v->assign(n + kLanes, 0);
+  s.sphere.resize(n);
+  s.reach.assign(n + kLanes, 0.0F);
+  for (std::size_t p = 0; p < n; ++p) {
+    const SphereGroup<Real>& group = lanes.group[s.from[p] / kLanes];
+    const std::size_t l = s.from[p] % kLanes;
+    s.sphere[p] = group.sphere[l];
+    s.x[p] = leading(group.x[l]);
+    s.y[p] = leading(group.y[l]);
+    s.z[p] = leading(group.z[l]);
+    s.reach[p] = static_cast<float>(reach_of(group, l));
+  }
+  return s;
+}
+
+/// Bins next to b along an axis of `count` bins, each once: [first, last] of up to two runs.
+struct Runs {
+  std::array<std::array<std::uint32_t, 2>, 2> run{};
+  std::size_t count = 1;
+};
+
+Runs runs_around(std::uint32_t b, std::uint32_t bins) {
+  Runs runs;
+  if (bins <= 3) {
+    runs.run[0] = {0, bins - 1};
+  } else if (b == 0) {
+    runs.run = {{{0, 1}, {bins - 1, bins - 1}}};
+    runs.count = 2;
+  } else if (b == bins - 1) {
+    runs.run = {{{0, 0}, {bins - 2, bins - 1}}};
+    runs.count = 2;
+  } else {
+    runs.run[0] = {b - 1, b + 1};
+  }
+  return runs;
+}
+
+/// Sorts places by the indices of their spheres. They are few, so by insertion.
+void sort_by_sphere(const Spatial& s, std::uint32_t* places, std::size_t count, std::vector<std::uint64_t>& keys) {
+  keys.resize(count);
+  for (std::size_t k = 0; k < count; ++k) keys[k] = std::uint64_t{s.sphere[places[k]]} << 32 | places[k];
+  if (count > 64) {
+    std::sort(keys.begin(), keys.end());
+  } else {
+    for (std::size_t k = 1; k < count; ++k) {
+      const std::uint64_t key = keys[k];
+      std::size_t to = k;
+      for (; to > 0 && keys[to - 1] > key; --to) keys[to] = keys[to - 1];
+      keys[to] = key;
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) places[k] = static_cast<std::uint32_t>(keys[k]);
+}
+
+/// Neighbours of the spheres of a block, one after the other.
+struct Found {
+  std::vector<std::uint32_t> neighbour;
+  std::vector<std::uint32_t> count, near_count;
+};
+
+/// How many of them are nearer than the sum of the radii and near_skin.
+std::uint32_t count_near(const Spatial& s, std::size_t p, const std::uint32_t* neighbour, std::size_t count, float narrower) {
+  std::uint32_t near = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t q = neighbour[k];
+    const auto between = [](std::int32_t a, std::int32_t b) {
+      return static_cast<float>(static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b)));
+    };
+    const float dx = between(s.x[p], s.x[q]) * s.edge[0], dy = between(s.y[p], s.y[q]) * s.edge[1], dz = between(s.z[p], s.z[q]) * s.edge[2];
+    const float reach = s.reach[p] + s.reach[q] - narrower;
+    near += dx * dx + dy * dy + dz * dz < reach * reach ? 1 : 0;
+  }
+  return near;
+}
+
+/// Spheres in the bins around that of sphere p.
+struct Surroundings {
+  std::array<SearchRange, 18> range;
+  std::size_t count = 0, spheres = 0;
+};
+
+Surroundings surroundings(const Spatial& s, std::size_t p) {
+  const Runs along_x = runs_around(s.bin_along(0, s.x[p]), s.bins[0]), along_y = runs_around(s.bin_along(1, s.y[p]), s.bins[1]),
+             along_z = runs_around(s.bin_along(2, s.z[p]), s.bins[2]);
+  Surroundings around;
+  for (std::size_t kz = 0; kz < along_z.count; ++kz) {
+    for (std::uint32_t bz = along_z.run[kz][0]; bz <= along_z.run[kz][1]; ++bz) {
+      for (std::size_t ky = 0; ky < along_y.count; ++ky) {
+        for (std::uint32_t by = along_y.run[ky][0]; by <= along_y.run[ky][1]; ++by) {
+          for (std::size_t kx = 0; kx < along_x.count; ++kx) {
+            const std::size_t begin = s.start[s.at(along_x.run[kx][0], by, bz)], end = s.start[s.at(along_x.run[kx][1], by, bz) + 1];
+            around.range[around.count++] = {static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end)};
+            around.spheres += end - begin;
+          }
+        }
+      }
+    }
+  }
+  return around;
+}
+
+Found search(const Spatial& s, float narrower, std::size_t begin, std::size_t end) {
+  Found found;
+  found.count.reserve(end - begin);
+  found.neighbour.resize(32 * (end - begin) + kLanes);
+  const SearchField field{s.x.data(), s.y.data(), s.z.data(), s.reach.data(), s.edge};
+  std::vector<std::uint64_t> keys;
+  Surroundings around;
+  std::size_t total = 0, bin = s.start.size();
+  for (std::size_t p = begin; p < end; ++p) {
+    const std::size_t own_bin = s.at(s.bin_along(0, s.x[p]), s.bin_along(1, s.y[p]), s.bin_along(2, s.z[p]));
+    if (own_bin != bin) around = surroundings(s, p);
+    bin = own_bin;
+    if (found.neighbour.size() < total + around.spheres + kLanes) found.neighbour.resize(2 * (total + around.spheres) + kLanes);
+    std::uint32_t* const own = found.neighbour.data() + total;
+    const std::size_t count = find_near(field, p, {around.range.data(), around.count}, own);
+    sort_by_sphere(s, own, count, keys);
+    found.count.push_back(static_cast<std::uint32_t>(count));
+    found.near_count.push_back(count_near(s, p, own, count, narrower));
+    total += count;
+  }
+  return found;
+}
+
+/// Sphere `from` of the old groups into lane `to` of the new ones.
+template <class Real>
+void move_sphere(const std::vector<SphereGroup<Real>>& old, std::size_t from, std::vector<SphereGroup<Real>>& group, std::size_t to) {
+  const SphereGroup<Real>& a = old[from / kLanes];
+  SphereGroup<Real>& b = group[to / kLanes];
+  const std::size_t i = from % kLanes, j = to % kLanes;
+  b.x[j] = b.ref_x[j] = a.x[i];
+  b.y[j] = b.ref_y[j] = a.y[i];
+  b.z[j] = b.ref_z[j] = a.z[i];
+  b.vx[j] = a.vx[i];
+  b.vy[j] = a.vy[i];
+  b.vz[j] = a.vz[i];
+  b.ax[j] = a.ax[i];
+  b.ay[j] = a.ay[i];
+  b.az[j] = a.az[i];
+  b.radius[j] = a.radius[i];
+  b.inverse_mass[j] = a.inverse_mass[i];
+  b.sphere[j] = a.sphere[i];
+}
+
+}  // namespace
+
+bool fits_lanes(const std::array<double, 3>& edge, double cutoff) {
+  return 2 * cutoff * (1 + 4 * kRounding) < *std::min_element(edge.begin(), edge.end());
+}
+
+template <class Real>
+void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin, double near_skin, ThreadTeam& team) {
+  const std::size_t n = lanes.spheres;
+  if (n >= std::numeric_limits<std::int32_t>::max() - kLanes) throw InvalidInput("neighbour list: too many spheres");
+  const Spatial s = sort_spatially(lanes, edge, skin);
+  std::vector<Found> blocks(block_count(n));
+  team.for_each_block(blocks.size(), [&](std::size_t block) {
+    blocks[block] = search(s, static_cast<float>(skin - near_skin), block * kBlockSize, std::min(n, (block + 1) * kBlockSize));
+  });
+
+  // place among the sorted -> count and first neighbour
+  std::vector<std::uint32_t> count(n), near_count(n);
+  std::vector<const std::uint32_t*> first(n);
+  for (std::size_t p = 0; p < n; ++p) {
+    const Found& found = blocks[p / kBlockSize];
+    count[p] = found.count[p % kBlockSize];
+    near_count[p] = found.near_count[p % kBlockSize];
+    first[p] = p % kBlockSize == 0 ? found.neighbour.data() : first[p - 1] + count[p - 1];
+  }
+  std::vector<std::uint32_t> order(n), rank(n);  // lane -> place, place -> lane
+  std::iota(order.begin(), order.end(), 0U);
+  for (std::size_t w = 0; w < n; w += kWindow) {
+    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(w), order.begin() + static_cast<std::ptrdiff_t>(std::min(n, w + kWindow)),
+                     [&](std::uint32_t p, std::uint32_t q) { return near_count[p] > near_count[q]; });
+  }
+  for (std::size_t t = 0; t < n; ++t) rank[order[t]] = static_cast<std::uint32_t>(t);
+
+  const std::size_t groups = (n + kLanes - 1) / kLanes;
+  SphereGroup<Real> nobodies{};
+  std::fill(std::begin(nobodies.radius), std::end(nobodies.radius), Real{kNobodysRadius});
+  std::vector<SphereGroup<Real>> group(groups, nobodies);
+  lanes.first_rung.assign(groups + 1, 0);
+  for (std::size_t g = 0; g < groups; ++g) {
+    std::uint32_t longest = 0;
+    for (std::size_t t = g * kLanes; t < std::min(n, (g + 1) * kLanes); ++t) longest = std::max(longest, count[order[t]]);
+    lanes.first_rung[g + 1] = lanes.first_rung[g] + longest;
+  }
+  constexpr auto row_size = static_cast<std::uint32_t>(sizeof(SphereRow<Real>));
+  const auto nobody = static_cast<std::uint32_t>(groups * kLanes);
+  lanes.rung.resize(lanes.first_rung[groups] + 1);  // one more, which is fetched ahead and not used
+  std::fill(std::begin(lanes.rung.back().row), std::end(lanes.rung.back().row), row_size * nobody);
+  team.for_each_block(block_count(n), [&](std::size_t block) {
+    for (std::size_t g = block * kBlockSize / kLanes; g < std::min(groups, (block + 1) * kBlockSize / kLanes); ++g) {
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        const std::size_t t = g * kLanes + l;
+        const std::uint32_t own = t < n ? count[order[t]] : 0;
+        for (std::size_t k = 0; k < own; ++k) lanes.rung[lanes.first_rung[g] + k].row[l] = row_size * rank[first[order[t]][k]];
+        for (std::size_t k = lanes.first_rung[g] + own; k < lanes.first_rung[g + 1]; ++k) lanes.rung[k].row[l] = row_size * nobody;
+        if (t < n) move_sphere(lanes.group, s.from[order[t]], group, t);
+      }
+    }
+  });
+  lanes.near_rung.resize(lanes.rung.size());
+  lanes.near_rung.back() = lanes.rung.back();
+  lanes.near_count.assign(groups, 0);
+  lanes.group = std::move(group);
+  lanes.row.assign(nobody + 1, SphereRow<Real>{});
+  lanes.row[nobody].radius = Real{kNobodysRadius};
+}
+
+template <class Real>
+NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p) {
+  constexpr int far = 2;  // unwrapped fractions of neighbours differ by less than 2.5
+  constexpr int across = 2 * far + 1;
+  NeighbourList list;
+  for (int nx = -far; nx <= far; ++nx) {
+    for (int ny = -far; ny <= far; ++ny) {
+      for (int nz = -far; nz <= far; ++nz) list.offset.emplace_back(nx, ny, nz);
+    }
+  }
+  const auto image = [](double difference) { return static_cast<int>(std::lround(difference)) + far; };
+  std::vector<std::size_t> lane(p.size());
+  for (std::size_t t = 0; t < lanes.spheres; ++t) lane[lanes.group[t / kLanes].sphere[t % kLanes]] = t;
+  list.first.push_back(0);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::size_t g = lane[i] / kLanes, l = lane[i] % kLanes;
+    for (std::size_t k = lanes.first_rung[g]; k < lanes.first_rung[g + 1]; ++k) {
+      const std::size_t t = lanes.rung[k].row[l] / sizeof(SphereRow<Real>);
+      if (t >= lanes.spheres) break;
+      const std::uint32_t j = lanes.group[t / kLanes].sphere[t % kLanes];
+      list.j.push_back(j);
+      list.image.push_back(static_cast<std::uint32_t>(
+          (image(p.sx[i] - p.sx[j]) * across + image(p.sy[i] - p.sy[j])) * across + image(p.sz[i] - p.sz[j])));
+    }
+    list.first.push_back(list.j.size());
+  }
+  return list;
+}
+
+template NeighbourList plain_list(const Lanes<float>&, const Packing&);
+template NeighbourList plain_list(const Lanes<double>&, const Packing&);
+template void arrange(Lanes<float>&, const std::array<double, 3>&, double, double, ThreadTeam&);
+template void arrange(Lanes<double>&, const std::array<double, 3>&, double, double, ThreadTeam&);
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,80 @@
+#pragma once
+// The two passes of a time step over groups of sixteen spheres, on the widest vectors that the machine has. Equations:
+// dem/contact_law.hpp and dem/simulation.hpp. Everything in internal units (dem/lanes.hpp).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dem/lanes.hpp"
+
+namespace grainlaw::dem {
+
+/// What a step of length dt is made of, rectangular cells only.
+struct LaneStep {
+  double half_dt = 0;
+  std::array<double, 3> drift{};  ///< quanta of the fixed point per velocity, at dt/2
+  std::array<double, 3> edge{};   ///< of the cell at the end of the step
+  std::array<double, 3> rate{};   ///< L there, diagonal
+  double allowed = 0;             ///< a sphere may move against the cell since the list was made
+  double near_allowed = 0;        ///< ... since the near ones were picked
+  double stiffness = 0, viscosity = 0, drag = 0;  ///< k, gamma, gamma_b
+  bool portable_bits = false;     ///< round as machines with a fused a b + c do, at a price where there is none
+};
+
+/// Sums over a range of groups.
+struct LaneSums {
+  double box_power = 0, contact_power = 0;
+  double v2 = 0;  ///< sum of squared velocities
+};
+
+/// Rows of the groups [begin, end) from positions and velocities, the latter predicted by dt/2.
+void write_rows(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+void write_rows(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+
+enum class Drifted {
+  well,
+  beyond_near,  ///< two spheres may touch that are not among the near ones
+  beyond_list,  ///< two spheres may touch that are not listed, or will be so when the near ones are picked the next time
+  lost,         ///< a sphere moved farther in this step than an eighth of the cell, or is nowhere
+};
+
+/// Half kick, drift, rows.
+Drifted kick_and_drift(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+Drifted kick_and_drift(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+
+/// Picks from the list, at the present positions, all pairs nearer than r_i + r_j + near_skin; the rows must be current.
+/// `edge` and `near_skin` in internal units.
+void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
+void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
+
+/// Contact forces from the rows, then the second half kick with implicit drag.
+LaneSums force_and_kick(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+LaneSums force_and_kick(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+
+/// A candidate's view of all spheres for the search of neighbours, in spatial order.
+struct SearchField {
+  const std::int32_t *x = nullptr, *y = nullptr, *z = nullptr;  ///< steps of 2^-32 of the cell's edges
+  const float* reach = nullptr;                                 ///< radius and half the skin
+  std::array<float, 3> edge{};                                  ///< of the cell over 2^32
+};
+
+/// Spheres [begin, end) in spatial order.
+struct SearchRange {
+  std::uint32_t begin = 0, end = 0;
+};
+
+/// Writes to `found` (room for 16 more than all) the spheres of the ranges that are nearer to sphere i than the sum of
+/// their reaches, i itself left out; returns how many.
+std::size_t find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found);
+
+/// Names of the vector instructions that this machine can use, best first; what the passes use is the first of them.
+std::vector<std::string> vector_targets();
+
+/// For tests and measurements: use `name` of vector_targets(), or "" for the best again.
+void use_vector_target(const std::string& name);
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,80 @@
+#pragma once
+// Spheres arranged for vector arithmetic: sixteen to a group, one lane each, whatever the width of the machine's
+// vectors, so that sums have one order everywhere. Positions are fractions of the cell in fixed point: the wrap-around
+// of an integer difference is the nearest image, and a deforming cell costs nothing. What other spheres read of a
+// sphere lies together in one row. Lengths, times and masses are in powers of two of SI (Units), so that conversion is
+// exact.
+//   mixed precision: 32-bit positions, float forces;  full precision: 52-bit positions, double forces
+// Only for rectangular cells in which a sphere meets at most one image of another.
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace grainlaw::dem {
+
+inline constexpr std::size_t kLanes = 16;
+
+template <class Real>
+using FixedPoint = std::conditional_t<std::is_same_v<Real, float>, std::int32_t, std::int64_t>;
+
+/// Steps of the fixed point per cell edge.
+template <class Real>
+inline constexpr double kStepsPerEdge = std::is_same_v<Real, float> ? 0x1p32 : 0x1p64;
+
+/// Positions per cell edge: in 64-bit words the lowest 12 bits stay zero, so that each fraction is a double.
+template <class Real>
+inline constexpr double kQuantaPerEdge = std::is_same_v<Real, float> ? 0x1p32 : 0x1p52;
+
+/// SI value of one internal unit, each a power of two.
+struct Units {
+  double length = 1, time = 1, mass = 1;
+};
+
+/// What the neighbours of a sphere read; 32 or 64 bytes, so that it lies in one cache line.
+template <class Real>
+struct alignas(8 * sizeof(Real)) SphereRow {
+  FixedPoint<Real> x, y, z;
+  Real radius;
+  Real vx, vy, vz;  ///< predicted to the end of the step
+  Real unused;
+};
+
+/// Sixteen spheres. Unused lanes have inverse mass 0 and a radius so negative that they touch nobody.
+template <class Real>
+struct alignas(64) SphereGroup {
+  using Int = FixedPoint<Real>;
+  Int x[kLanes], y[kLanes], z[kLanes];
+  Int ref_x[kLanes], ref_y[kLanes], ref_z[kLanes];     ///< when the list was made
+  Int near_x[kLanes], near_y[kLanes], near_z[kLanes];  ///< when the near were picked from it
+  Real vx[kLanes], vy[kLanes], vz[kLanes];
+  Real ax[kLanes], ay[kLanes], az[kLanes];
+  Real radius[kLanes], inverse_mass[kLanes];
+  std::uint32_t sphere[kLanes];  ///< index in the State
+};
+
+inline constexpr float kNobodysRadius = -0x1p100F;
+
+// Neighbours are listed twice. The list of all within a wide skin lasts for long; of it those within a narrow skin are
+// picked again and again, which costs about as much as one force pass, and only they are visited for forces. Each
+// sphere's neighbours are in the order of the State in both, so no force depends on when either was made.
+
+/// The k-th neighbours of the sixteen spheres of a group: where their rows begin [bytes].
+struct alignas(64) Rung {
+  std::uint32_t row[kLanes];
+};
+
+template <class Real>
+struct Lanes {
+  std::size_t spheres = 0;
+  std::vector<SphereGroup<Real>> group;
+  std::vector<SphereRow<Real>> row;        ///< in the order of lanes; the last one is nobody's, for unused places
+  std::vector<std::size_t> first_rung;     ///< of each group, and the end
+  std::vector<Rung> rung;                  ///< the list
+  std::vector<Rung> near_rung;             ///< the near ones, from the same places on
+  std::vector<std::uint32_t> near_count;   ///< rungs of them in each group
+  Units unit;
+};
+
+}  // namespace grainlaw::dem
