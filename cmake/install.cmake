@@ -14,7 +14,7 @@ foreach(room IN ITEMS model dem fit predict)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/ DESTINATION ${installed_headers}/${room}
     FILES_MATCHING PATTERN *.hpp
     # private to dem: they show the JSON library
-    PATTERN sealed_file.hpp EXCLUDE PATTERN state_record.hpp EXCLUDE)
+    PATTERN "*-inl.hpp" EXCLUDE PATTERN sealed_file.hpp EXCLUDE PATTERN state_record.hpp EXCLUDE)
 endforeach()
 install(EXPORT grainlaw-targets NAMESPACE grainlaw:: DESTINATION ${installed_package})
 

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "dem/lane_list.hpp"
+#include "dem/lane_search.hpp"
 #include "dem/lane_state.hpp"
 
 namespace grainlaw::dem {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "dem/lane_pass.hpp"
+#include "dem/lane_search.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::dem {

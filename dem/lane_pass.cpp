@@ -1,8 +1,5 @@
 #include "dem/lane_pass.hpp"
 
-#include <algorithm>
-#include <bit>
-
 // The code between foreach_target.h and HWY_ONCE is compiled once for each kind of vector instructions.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)  // nothing of theirs is used
 #undef HWY_TARGET_INCLUDE
@@ -10,224 +7,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "dem/lane_vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace grainlaw::dem {
 namespace HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-template <class Real>
-using Tag = hn::CappedTag<Real, kLanes>;
-
-// --- a b + c, rounded once -----------------------------------------------------------------------------------------
-// Fused where the machine has it (AVX2, AVX-512). Elsewhere the product is rounded, too, unless the same bits are asked
-// for: then the fused operation is composed of others.
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
-constexpr bool kHasFused = true;
-#else
-constexpr bool kHasFused = false;
-#endif
-
-/// x + y and what rounding took from it.
-template <class V>
-struct Exact {
-  V sum, rest;
-};
-
-template <class V>
-HWY_INLINE Exact<V> add_exactly(V x, V y) {
-  const V sum = hn::Add(x, y), part = hn::Sub(sum, x);
-  return {sum, hn::Add(hn::Sub(x, hn::Sub(sum, part)), hn::Sub(y, part))};
-}
-
-/// x + y rounded to odd: an inexact sum gets an odd last bit, so that a second rounding does no harm.
-template <class D, class V>
-HWY_INLINE V add_to_odd(D d, V x, V y) {
-  const hn::RebindToSigned<D> di;
-  const Exact<V> e = add_exactly(x, y);
-  const auto bits = hn::BitCast(di, e.sum);
-  const auto one = hn::Set(di, 1);
-  const auto even = hn::Eq(hn::And(bits, one), hn::Zero(di));
-  const auto inexact = hn::RebindMask(di, hn::Ne(e.rest, hn::Zero(d)));
-  // towards zero where the rest has not the sign of the sum
-  const auto inward = hn::Lt(hn::Xor(bits, hn::BitCast(di, e.rest)), hn::Zero(di));
-  const auto odd = hn::Add(bits, hn::IfThenElse(inward, hn::Set(di, -1), one));
-  return hn::BitCast(d, hn::IfThenElse(hn::And(even, inexact), odd, bits));
-}
-
-/// The fused operation from double-precision ones (S. Boldo, G. Melquiond, IEEE Trans. Comput. 57 (2008) 462).
-template <class V>
-HWY_INLINE V fused_double(V a, V b, V c) {
-  const hn::DFromV<V> d;
-  const V splitter = hn::Set(d, 0x1p27 + 1);
-  const auto head = [&](V x) {
-    const V scaled = hn::Mul(splitter, x);
-    return hn::Sub(scaled, hn::Sub(scaled, x));
-  };
-  const V ah = head(a), bh = head(b), al = hn::Sub(a, ah), bl = hn::Sub(b, bh), product = hn::Mul(a, b);
-  const V rest = hn::Add(hn::Add(hn::Add(hn::Sub(hn::Mul(ah, bh), product), hn::Mul(ah, bl)), hn::Mul(al, bh)), hn::Mul(al, bl));
-  const Exact<V> low = add_exactly(c, rest), high = add_exactly(product, low.sum);
-  return hn::Add(high.sum, add_to_odd(d, low.rest, high.rest));
-}
-
-template <class V>
-HWY_INLINE V fused_float(V a, V b, V c) {
-  const hn::DFromV<V> d;
-#if HWY_TARGET == HWY_SCALAR
-  const hn::Rebind<double, hn::DFromV<V>> dd;
-  return hn::DemoteTo(d, add_to_odd(dd, hn::Mul(hn::PromoteTo(dd, a), hn::PromoteTo(dd, b)), hn::PromoteTo(dd, c)));
-#else
-  const hn::Half<hn::DFromV<V>> half;
-  const hn::Repartition<double, hn::DFromV<V>> dd;
-  const auto part = [&](auto a2, auto b2, auto c2) {  // products of floats are exact
-    return hn::DemoteTo(half, add_to_odd(dd, hn::Mul(hn::PromoteTo(dd, a2), hn::PromoteTo(dd, b2)), hn::PromoteTo(dd, c2)));
-  };
-  return hn::Combine(d, part(hn::UpperHalf(half, a), hn::UpperHalf(half, b), hn::UpperHalf(half, c)),
-                     part(hn::LowerHalf(half, a), hn::LowerHalf(half, b), hn::LowerHalf(half, c)));
-#endif
-}
-
-/// How a b + c is rounded.
-template <bool portable>
-struct MultiplyAdd {
-  template <class V>
-  HWY_INLINE V operator()(V a, V b, V c) const {
-    if constexpr (kHasFused || !portable) {
-      return hn::MulAdd(a, b, c);
-    } else if constexpr (sizeof(hn::TFromV<V>) == 8) {
-      return fused_double(a, b, c);
-    } else {
-      return fused_float(a, b, c);
-    }
-  }
-};
-
-// --- Rows and vectors --------------------------------------------------------------------------------------------
-// A row is cut into pieces of 16 bytes. A vector of pieces of the rows k, k + m, k + 2m ... (m numbers to a piece)
-// becomes, transposed with its m - 1 siblings, m vectors of one field each, lanes in the order of rows.
-
-template <class D>
-struct Quartet {
-  hn::Vec<D> a, b, c, d;
-};
-
-#if HWY_TARGET == HWY_SCALAR  // vectors of one lane know no transposition
-template <class D, class Real>
-HWY_INLINE Quartet<D> gather_rows(D d, const Real* rows, const std::uint32_t* row, std::size_t from) {
-  const Real* p = reinterpret_cast<const Real*>(reinterpret_cast<const char*>(rows) + row[0]) + from;
-  return {hn::Load(d, p), hn::Load(d, p + 1), hn::Load(d, p + 2), hn::Load(d, p + 3)};
-}
-
-template <class D, class Real>
-HWY_INLINE void store_rows(D d, const Quartet<D>& q, Real* rows, std::size_t from) {
-  hn::Store(q.a, d, rows + from);
-  hn::Store(q.b, d, rows + from + 1);
-  hn::Store(q.c, d, rows + from + 2);
-  hn::Store(q.d, d, rows + from + 3);
-}
-#else
-template <class D, class Real>
-HWY_INLINE hn::Vec<D> gather_pieces(D d, const Real* rows, const std::uint32_t* row, std::size_t piece) {
-  constexpr std::size_t m = 16 / sizeof(Real);
-  if constexpr (hn::MaxLanes(D()) == m) {
-    return hn::Load(d, reinterpret_cast<const Real*>(reinterpret_cast<const char*>(rows) + row[0]) + piece * m);
-  } else {
-    const hn::Half<D> half;
-    const auto lower = gather_pieces(half, rows, row, piece);
-    const auto upper = gather_pieces(half, rows, row + hn::MaxLanes(half), piece);
-    return hn::Combine(d, upper, lower);
-  }
-}
-
-template <class D, class Real>
-HWY_INLINE void store_pieces(D d, hn::Vec<D> v, Real* row) {
-  constexpr std::size_t m = 16 / sizeof(Real);
-  if constexpr (hn::MaxLanes(D()) == m) {
-    hn::Store(v, d, row);
-  } else {
-    const hn::Half<D> half;
-    store_pieces(half, hn::LowerHalf(half, v), row);
-    store_pieces(half, hn::UpperHalf(half, v), row + hn::MaxLanes(half) * 8);
-  }
-}
-
-/// Four fields of the rows, from the half of them that begins at number `from` (0 or 4).
-template <class D>
-HWY_INLINE Quartet<D> gather_rows(D d, const float* rows, const std::uint32_t* row, std::size_t from) {
-  const hn::Repartition<double, D> pairs;
-  const auto p0 = gather_pieces(d, rows, row, from / 4), p1 = gather_pieces(d, rows, row + 1, from / 4),
-             p2 = gather_pieces(d, rows, row + 2, from / 4), p3 = gather_pieces(d, rows, row + 3, from / 4);
-  const auto ab01 = hn::BitCast(pairs, hn::InterleaveLower(d, p0, p1)), cd01 = hn::BitCast(pairs, hn::InterleaveUpper(d, p0, p1)),
-             ab23 = hn::BitCast(pairs, hn::InterleaveLower(d, p2, p3)), cd23 = hn::BitCast(pairs, hn::InterleaveUpper(d, p2, p3));
-  return {hn::BitCast(d, hn::InterleaveLower(pairs, ab01, ab23)), hn::BitCast(d, hn::InterleaveUpper(pairs, ab01, ab23)),
-          hn::BitCast(d, hn::InterleaveLower(pairs, cd01, cd23)), hn::BitCast(d, hn::InterleaveUpper(pairs, cd01, cd23))};
-}
-
-template <class D>
-HWY_INLINE Quartet<D> gather_rows(D d, const double* rows, const std::uint32_t* row, std::size_t from) {
-  const auto p0 = gather_pieces(d, rows, row, from / 2), p1 = gather_pieces(d, rows, row + 1, from / 2);
-  const auto q0 = gather_pieces(d, rows, row, from / 2 + 1), q1 = gather_pieces(d, rows, row + 1, from / 2 + 1);
-  return {hn::InterleaveLower(d, p0, p1), hn::InterleaveUpper(d, p0, p1), hn::InterleaveLower(d, q0, q1),
-          hn::InterleaveUpper(d, q0, q1)};
-}
-
-/// The other way: four fields into consecutive rows.
-template <class D>
-HWY_INLINE void store_rows(D d, const Quartet<D>& q, float* rows, std::size_t from) {
-  const hn::Repartition<double, D> pairs;
-  const auto ab01 = hn::BitCast(pairs, hn::InterleaveLower(d, q.a, q.b)), ab23 = hn::BitCast(pairs, hn::InterleaveUpper(d, q.a, q.b)),
-             cd01 = hn::BitCast(pairs, hn::InterleaveLower(d, q.c, q.d)), cd23 = hn::BitCast(pairs, hn::InterleaveUpper(d, q.c, q.d));
-  store_pieces(d, hn::BitCast(d, hn::InterleaveLower(pairs, ab01, cd01)), rows + from);
-  store_pieces(d, hn::BitCast(d, hn::InterleaveUpper(pairs, ab01, cd01)), rows + from + 8);
-  store_pieces(d, hn::BitCast(d, hn::InterleaveLower(pairs, ab23, cd23)), rows + from + 16);
-  store_pieces(d, hn::BitCast(d, hn::InterleaveUpper(pairs, ab23, cd23)), rows + from + 24);
-}
-
-template <class D>
-HWY_INLINE void store_rows(D d, const Quartet<D>& q, double* rows, std::size_t from) {
-  store_pieces(d, hn::InterleaveLower(d, q.a, q.b), rows + from);
-  store_pieces(d, hn::InterleaveUpper(d, q.a, q.b), rows + from + 8);
-  store_pieces(d, hn::InterleaveLower(d, q.c, q.d), rows + from + 2);
-  store_pieces(d, hn::InterleaveUpper(d, q.c, q.d), rows + from + 10);
-}
-#endif
-
-// --- Fixed point -------------------------------------------------------------------------------------------------
-
-/// `steps`, of magnitude below 2^29 or 2^49, rounded to the next quantum of the fixed point.
-template <class D>
-HWY_INLINE auto to_fixed(D d, hn::Vec<D> steps) {
-  if constexpr (sizeof(hn::TFromD<D>) == 4) {
-    return hn::NearestInt(steps);
-  } else {
-    const hn::RebindToSigned<D> di;
-    const auto magic = hn::Set(d, 0x1.8p52);  // the sum's last bit is worth 1
-    return hn::ShiftLeft<12>(hn::Sub(hn::BitCast(di, hn::Add(steps, magic)), hn::BitCast(di, magic)));
-  }
-}
-
-/// Cell edge over 2^32 or 2^64 as a sum of two Reals, so that it is not rounded for all pairs alike.
-template <class D, bool portable>
-struct Edge {
-  hn::Vec<D> head, tail;
-  Edge(D d, double edge) {
-    using Real = hn::TFromD<D>;
-    const double scale = edge / kStepsPerEdge<Real>;
-    const auto rounded = static_cast<Real>(scale);
-    head = hn::Set(d, rounded);
-    tail = hn::Set(d, static_cast<Real>(scale - static_cast<double>(rounded)));
-  }
-  template <class VI>
-  HWY_INLINE hn::Vec<D> operator()(D d, VI difference) const {
-    const auto c = hn::ConvertTo(d, difference);
-    if constexpr (sizeof(hn::TFromD<D>) == 4) {
-      return MultiplyAdd<portable>()(c, head, hn::Mul(c, tail));
-    } else {
-      return hn::Mul(c, head);
-    }
-  }
-};
 
 // --- Sums --------------------------------------------------------------------------------------------------------
 
@@ -330,47 +115,6 @@ Drifted kick_and_drift_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t 
   return hn::AllTrue(d, near) ? Drifted::well : Drifted::beyond_near;
 }
 
-template <class Real>
-void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
-  const Tag<Real> d;
-  const hn::RebindToSigned<Tag<Real>> di;
-  using V = hn::Vec<Tag<Real>>;
-  const Edge<Tag<Real>, false> ex(d, edge[0]), ey(d, edge[1]), ez(d, edge[2]);
-  const Real* rows = reinterpret_cast<const Real*>(lanes.row.data());
-  const auto nobody = static_cast<std::uint32_t>((lanes.row.size() - 1) * sizeof(SphereRow<Real>));
-  for (std::size_t g = begin; g < end; ++g) {
-    SphereGroup<Real>& own = lanes.group[g];
-    std::uint32_t count[kLanes] = {};
-    Rung* picked = lanes.near_rung.data() + lanes.first_rung[g];
-    for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
-      const auto x = hn::Load(di, own.x + o), y = hn::Load(di, own.y + o), z = hn::Load(di, own.z + o);
-      hn::Store(x, di, own.near_x + o);
-      hn::Store(y, di, own.near_y + o);
-      hn::Store(z, di, own.near_z + o);
-      const V reach = hn::Add(hn::Load(d, own.radius + o), hn::Set(d, static_cast<Real>(near_skin)));
-      for (std::size_t rung = lanes.first_rung[g]; rung < lanes.first_rung[g + 1]; ++rung) {
-        const std::uint32_t* row = lanes.rung[rung].row + o;
-        const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0);
-        const V dx = ex(d, hn::Sub(x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(y, hn::BitCast(di, place.b))),
-                dz = ez(d, hn::Sub(z, hn::BitCast(di, place.c)));
-        const V both = hn::Max(hn::Add(reach, place.d), hn::Zero(d));
-        const auto near = hn::Lt(hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx))), hn::Mul(both, both));
-        std::uint8_t bytes[8] = {};
-        hn::StoreMaskBits(d, near, bytes);
-        for (std::uint32_t bits = bytes[0] | std::uint32_t{bytes[1]} << 8; bits != 0; bits &= bits - 1) {
-          const auto l = static_cast<std::size_t>(std::countr_zero(bits));
-          picked[count[o + l]++].row[o + l] = row[l];
-        }
-      }
-    }
-    const std::uint32_t longest = *std::max_element(count, count + kLanes);
-    for (std::size_t l = 0; l < kLanes; ++l) {
-      for (std::uint32_t k = count[l]; k < longest; ++k) picked[k].row[l] = nobody;
-    }
-    lanes.near_count[g] = longest;
-  }
-}
-
 template <bool portable, class Real>
 LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
@@ -443,34 +187,6 @@ LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t
   return {-0.5 * sum_of(totals.box), -sum_of(totals.contact), sum_of(totals.v2)};
 }
 
-std::size_t find_near_on(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found) {
-  const Tag<float> d;
-  const hn::RebindToSigned<Tag<float>> di;
-  const auto x = hn::Set(di, field.x[i]), y = hn::Set(di, field.y[i]), z = hn::Set(di, field.z[i]);
-  const auto reach = hn::Set(d, field.reach[i]);
-  const auto ex = hn::Set(d, field.edge[0]), ey = hn::Set(d, field.edge[1]), ez = hn::Set(d, field.edge[2]);
-  const auto self = hn::Set(di, static_cast<std::int32_t>(i)), lane = hn::Iota(di, 0);
-  std::size_t count = 0;
-  for (const SearchRange& range : ranges) {
-    const auto end = hn::Set(di, static_cast<std::int32_t>(range.end));
-    for (std::size_t p = range.begin; p < range.end; p += hn::Lanes(d)) {
-      const auto dx = hn::Mul(hn::ConvertTo(d, hn::Sub(x, hn::LoadU(di, field.x + p))), ex),
-                 dy = hn::Mul(hn::ConvertTo(d, hn::Sub(y, hn::LoadU(di, field.y + p))), ey),
-                 dz = hn::Mul(hn::ConvertTo(d, hn::Sub(z, hn::LoadU(di, field.z + p))), ez);
-      // not fused: one list everywhere
-      const auto d2 = hn::Add(hn::Mul(dz, dz), hn::Add(hn::Mul(dy, dy), hn::Mul(dx, dx)));
-      const auto both = hn::Add(reach, hn::LoadU(d, field.reach + p));
-      const auto index = hn::Add(lane, hn::Set(di, static_cast<std::int32_t>(p)));
-      auto near = hn::RebindMask(di, hn::Lt(d2, hn::Mul(both, both)));
-      near = hn::And(near, hn::And(hn::Ne(index, self), hn::Lt(index, end)));
-      if (hn::AllFalse(di, near)) continue;
-      hn::StoreU(hn::Compress(index, near), di, reinterpret_cast<std::int32_t*>(found + count));
-      count += hn::CountTrue(di, near);
-    }
-  }
-  return count;
-}
-
 // What HWY_EXPORT needs: plain functions. One instance is enough where the machine can fuse.
 #define GRAINLAW_BY_BITS(function, ...) \
   (step.portable_bits && !kHasFused ? function<!kHasFused>(__VA_ARGS__) : function<false>(__VA_ARGS__))
@@ -483,10 +199,6 @@ std::size_t find_near_on(const SearchField& field, std::size_t i, std::span<cons
   }                                                                                                               \
   LaneSums force_and_kick_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {  \
     return GRAINLAW_BY_BITS(force_and_kick_on, lanes, step, begin, end);                                          \
-  }                                                                                                               \
-  void pick_near_##name(Lanes<Real>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, \
-                        std::size_t end) {                                                                        \
-    pick_near_on(lanes, edge, near_skin, begin, end);                                                             \
   }
 GRAINLAW_PASSES(float, mixed)
 GRAINLAW_PASSES(double, full)
@@ -509,9 +221,6 @@ HWY_EXPORT(kick_and_drift_mixed);
 HWY_EXPORT(kick_and_drift_full);
 HWY_EXPORT(force_and_kick_mixed);
 HWY_EXPORT(force_and_kick_full);
-HWY_EXPORT(pick_near_mixed);
-HWY_EXPORT(pick_near_full);
-HWY_EXPORT(find_near_on);
 
 void write_rows(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   HWY_DYNAMIC_DISPATCH(write_rows_mixed)(lanes, step, begin, end);
@@ -531,16 +240,6 @@ LaneSums force_and_kick(Lanes<float>& lanes, const LaneStep& step, std::size_t b
 LaneSums force_and_kick(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   return HWY_DYNAMIC_DISPATCH(force_and_kick_full)(lanes, step, begin, end);
 }
-void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(pick_near_mixed)(lanes, edge, near_skin, begin, end);
-}
-void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(pick_near_full)(lanes, edge, near_skin, begin, end);
-}
-std::size_t find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found) {
-  return HWY_DYNAMIC_DISPATCH(find_near_on)(field, i, ranges, found);
-}
-
 std::vector<std::string> vector_targets() {
   hwy::SetSupportedTargetsForTest(0);
   std::vector<std::string> names;

@@ -4,8 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -46,30 +44,9 @@ enum class Drifted {
 Drifted kick_and_drift(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 Drifted kick_and_drift(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 
-/// Picks from the list, at the present positions, all pairs nearer than r_i + r_j + near_skin; the rows must be current.
-/// `edge` and `near_skin` in internal units.
-void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
-void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
-
 /// Contact forces from the rows, then the second half kick with implicit drag.
 LaneSums force_and_kick(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 LaneSums force_and_kick(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
-
-/// A candidate's view of all spheres for the search of neighbours, in spatial order.
-struct SearchField {
-  const std::int32_t *x = nullptr, *y = nullptr, *z = nullptr;  ///< steps of 2^-32 of the cell's edges
-  const float* reach = nullptr;                                 ///< radius and half the skin
-  std::array<float, 3> edge{};                                  ///< of the cell over 2^32
-};
-
-/// Spheres [begin, end) in spatial order.
-struct SearchRange {
-  std::uint32_t begin = 0, end = 0;
-};
-
-/// Writes to `found` (room for 16 more than all) the spheres of the ranges that are nearer to sphere i than the sum of
-/// their reaches, i itself left out; returns how many.
-std::size_t find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found);
 
 /// Names of the vector instructions that this machine can use, best first; what the passes use is the first of them.
 std::vector<std::string> vector_targets();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -14,6 +15,17 @@ void resize(Packing& p, std::size_t n) {
   for (auto* a : {&p.radius, &p.mass, &p.sx, &p.sy, &p.sz, &p.vx, &p.vy, &p.vz}) a->assign(n, 0.0);
   p.id.resize(n);
   std::iota(p.id.begin(), p.id.end(), std::int64_t{0});
+}
+
+void round_radii(Packing& packing) {
+  if (packing.size() == 0) return;
+  for (double before = 0;;) {
+    const double r_max = *std::max_element(packing.radius.begin(), packing.radius.end());
+    const double grid = std::ldexp(1.0, std::ilogb(r_max) + 2 - 24);
+    if (grid == before || !(grid > 0)) return;  // once more when rounding has carried the largest over a power of two
+    for (double& r : packing.radius) r = std::max(grid, grid * std::nearbyint(r / grid));
+    before = grid;
+  }
 }
 
 void set_masses(Packing& p, const Material& material) {

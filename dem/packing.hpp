@@ -26,6 +26,10 @@ struct Packing {
 /// Allocates all arrays for n spheres, zero filled, ids 0..n-1.
 void resize(Packing& packing, std::size_t n);
 
+/// Rounds the radii, by 2^-22 of the largest at most, to a grid on which the sum of any two is a float: in mixed precision
+/// a rounded sum would be the largest error of an overlap. Idempotent.
+void round_radii(Packing& packing);
+
 /// Sets the masses from the radii.
 void set_masses(Packing& packing, const Material& material);
 

@@ -50,12 +50,12 @@ State random_gas(const PackingOptions& options, double nu_gas, const EngineOptio
   const double w = options.size_width, r_min = 2 * options.mean_radius / (w + 1);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const auto position = uniform(options.seed, Stream::position, i);
-    // a float, so that no precision of the engine needs to round it
-    p.radius[i] = static_cast<double>(static_cast<float>(r_min * (1 + (w - 1) * uniform(options.seed, Stream::radius, i)[0])));
+    p.radius[i] = r_min * (1 + (w - 1) * uniform(options.seed, Stream::radius, i)[0]);
     p.sx[i] = position[0];
     p.sy[i] = position[1];
     p.sz[i] = position[2];
   }
+  round_radii(p);  // the same packing in every precision
   set_masses(p, options.material);
   scale_to_volume_fraction(p, nu_gas);
 

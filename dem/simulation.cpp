@@ -278,9 +278,7 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
   Packing& p = sim.state.packing;
   p.H = motion.H;
   check(p);
-  if (options.precision == Precision::mixed) {  // all that depends on radii must see the same ones
-    for (double& r : p.radius) r = static_cast<double>(static_cast<float>(r));
-  }
+  if (options.precision == Precision::mixed) round_radii(p);
   sim.team = std::make_shared<ThreadTeam>(options.threads);
   const std::size_t n = p.size();
   sim.place.resize(n);

@@ -91,7 +91,7 @@ class Row {
     const double C = (1 - row_.rattler_fraction) * row_.C_star;
     plausible(row_.P_star, kMeanFieldPressure * row_.nu * C * row_.mean_overlap, kSurelyJammed, "P_star",
               "volume fraction, coordination and mean overlap");
-    if (!(row_.P_star > kLeastPressure)) return;
+    if (!(row_.P_star > kSurelyJammed)) return;  // before, most contacts are those of rattlers, which C leaves out
     plausible(row_.fabric.tensor.trace(), kMeanFieldFabric * row_.nu * C, 0, "F_v", "volume fraction and coordination");
   }
 

@@ -29,7 +29,7 @@ check_private() { # file room line header
   local prefix
   for prefix in "${!private[@]}"; do
     if [[ $4 == "$prefix"* ]]; then
-      [[ $2 == "${private[$prefix]}" && $1 == *.cpp ]] ||
+      [[ $2 == "${private[$prefix]}" && ($1 == *.cpp || $1 == *-inl.hpp) ]] ||
         report "$1" "$3" "<$4> belongs to ${private[$prefix]}/*.cpp only"
       return 0
     fi

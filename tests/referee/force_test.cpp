@@ -48,7 +48,9 @@ Eigen::Matrix3d symmetric(double xx, double yy, double zz, double xy, double xz,
 }
 
 Seen seen_by_engine(const dem::State& state, const dem::CellMotion& motion, bool drag) {
-  const dem::Simulation sim = dem::start_simulation(state, {}, motion);
+  dem::EngineOptions in_double;
+  in_double.precision = dem::Precision::full;
+  const dem::Simulation sim = dem::start_simulation(state, in_double, motion);
   const Observation row = dem::observe(sim, motion, {});
   const dem::Packing& p = sim.state.packing;
   Seen seen;

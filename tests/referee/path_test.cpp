@@ -55,14 +55,16 @@ Series run_engine(const dem::State& state, const Course& course, int steps) {
   const double nu = dem::volume_fraction(state.packing);
   const StraightSegment segment = dem::scene::segment_of(direction_of(course.mode).tensor, course.z_strain, nu);
   dem::ElementTestOptions options;
+  options.engine.precision = dem::Precision::full;
   options.drive.strain_rate = kPeakRate;
   options.engine.time_step_fraction =
       course.duration() / steps / dem::min_collision_time(state.packing, state.material);
   const dem::Drive drive = dem::make_drive(segment, options.drive, state.packing.H);
   const Deviator<double> N = shear_direction({segment});
   Series series;
-  const auto test = dem::run_element_test(state, {segment}, options, {}, [&](const dem::Simulation& sim, int, double) {
+  const auto test = dem::run_element_test(state, {segment}, options, {}, [&](dem::Simulation& sim, int, double) {
     if (sim.state.step % static_cast<std::uint64_t>(steps / kRows) != 0) return;
+    dem::synchronise(sim);
     const Observation row = dem::observe(sim, dem::motion_at(drive, sim.state.time), N);
     series.push_back({row.P_star, row.s_par, row.C_star});
   });

@@ -1,0 +1,119 @@
+#include "dem/lane_search.hpp"
+
+#include <algorithm>
+#include <bit>
+
+// The code between foreach_target.h and HWY_ONCE is compiled once for each kind of vector instructions.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)  // nothing of theirs is used
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "dem/lane_search.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "dem/lane_vectors-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace grainlaw::dem {
+namespace HWY_NAMESPACE {
+namespace {
+
+template <class Real>
+void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
+  const Tag<Real> d;
+  const hn::RebindToSigned<Tag<Real>> di;
+  using V = hn::Vec<Tag<Real>>;
+  const Edge<Tag<Real>, false> ex(d, edge[0]), ey(d, edge[1]), ez(d, edge[2]);
+  const Real* rows = reinterpret_cast<const Real*>(lanes.row.data());
+  const auto nobody = static_cast<std::uint32_t>((lanes.row.size() - 1) * sizeof(SphereRow<Real>));
+  for (std::size_t g = begin; g < end; ++g) {
+    SphereGroup<Real>& own = lanes.group[g];
+    std::uint32_t count[kLanes] = {};
+    Rung* picked = lanes.near_rung.data() + lanes.first_rung[g];
+    for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
+      const auto x = hn::Load(di, own.x + o), y = hn::Load(di, own.y + o), z = hn::Load(di, own.z + o);
+      hn::Store(x, di, own.near_x + o);
+      hn::Store(y, di, own.near_y + o);
+      hn::Store(z, di, own.near_z + o);
+      const V reach = hn::Add(hn::Load(d, own.radius + o), hn::Set(d, static_cast<Real>(near_skin)));
+      for (std::size_t rung = lanes.first_rung[g]; rung < lanes.first_rung[g + 1]; ++rung) {
+        const std::uint32_t* row = lanes.rung[rung].row + o;
+        const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0);
+        const V dx = ex(d, hn::Sub(x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(y, hn::BitCast(di, place.b))),
+                dz = ez(d, hn::Sub(z, hn::BitCast(di, place.c)));
+        const V both = hn::Max(hn::Add(reach, place.d), hn::Zero(d));
+        const auto near = hn::Lt(hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx))), hn::Mul(both, both));
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, near, bytes);
+        for (std::uint32_t bits = bytes[0] | std::uint32_t{bytes[1]} << 8; bits != 0; bits &= bits - 1) {
+          const auto l = static_cast<std::size_t>(std::countr_zero(bits));
+          picked[count[o + l]++].row[o + l] = row[l];
+        }
+      }
+    }
+    const std::uint32_t longest = *std::max_element(count, count + kLanes);
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      for (std::uint32_t k = count[l]; k < longest; ++k) picked[k].row[l] = nobody;
+    }
+    lanes.near_count[g] = longest;
+  }
+}
+
+std::size_t find_near_on(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found) {
+  const Tag<float> d;
+  const hn::RebindToSigned<Tag<float>> di;
+  const auto x = hn::Set(di, field.x[i]), y = hn::Set(di, field.y[i]), z = hn::Set(di, field.z[i]);
+  const auto reach = hn::Set(d, field.reach[i]);
+  const auto ex = hn::Set(d, field.edge[0]), ey = hn::Set(d, field.edge[1]), ez = hn::Set(d, field.edge[2]);
+  const auto self = hn::Set(di, static_cast<std::int32_t>(i)), lane = hn::Iota(di, 0);
+  std::size_t count = 0;
+  for (const SearchRange& range : ranges) {
+    const auto end = hn::Set(di, static_cast<std::int32_t>(range.end));
+    for (std::size_t p = range.begin; p < range.end; p += hn::Lanes(d)) {
+      const auto dx = hn::Mul(hn::ConvertTo(d, hn::Sub(x, hn::LoadU(di, field.x + p))), ex),
+                 dy = hn::Mul(hn::ConvertTo(d, hn::Sub(y, hn::LoadU(di, field.y + p))), ey),
+                 dz = hn::Mul(hn::ConvertTo(d, hn::Sub(z, hn::LoadU(di, field.z + p))), ez);
+      // not fused: one list everywhere
+      const auto d2 = hn::Add(hn::Mul(dz, dz), hn::Add(hn::Mul(dy, dy), hn::Mul(dx, dx)));
+      const auto both = hn::Add(reach, hn::LoadU(d, field.reach + p));
+      const auto index = hn::Add(lane, hn::Set(di, static_cast<std::int32_t>(p)));
+      auto near = hn::RebindMask(di, hn::Lt(d2, hn::Mul(both, both)));
+      near = hn::And(near, hn::And(hn::Ne(index, self), hn::Lt(index, end)));
+      if (hn::AllFalse(di, near)) continue;
+      hn::StoreU(hn::Compress(index, near), di, reinterpret_cast<std::int32_t*>(found + count));
+      count += hn::CountTrue(di, near);
+    }
+  }
+  return count;
+}
+
+void pick_near_mixed(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
+  pick_near_on(lanes, edge, near_skin, begin, end);
+}
+void pick_near_full(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
+  pick_near_on(lanes, edge, near_skin, begin, end);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace grainlaw::dem
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace grainlaw::dem {
+
+HWY_EXPORT(pick_near_mixed);
+HWY_EXPORT(pick_near_full);
+HWY_EXPORT(find_near_on);
+
+void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(pick_near_mixed)(lanes, edge, near_skin, begin, end);
+}
+void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(pick_near_full)(lanes, edge, near_skin, begin, end);
+}
+std::size_t find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found) {
+  return HWY_DYNAMIC_DISPATCH(find_near_on)(field, i, ranges, found);
+}
+
+}  // namespace grainlaw::dem
+#endif

@@ -1,0 +1,35 @@
+#pragma once
+// The search for neighbours on vectors: who is near at all, and who of a list is near now. In internal units
+// (dem/lanes.hpp).
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "dem/lanes.hpp"
+
+namespace grainlaw::dem {
+
+/// Picks from the list, at the present positions, all pairs nearer than r_i + r_j + near_skin; the rows must be current.
+/// `edge` and `near_skin` in internal units.
+void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
+void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
+
+/// A candidate's view of all spheres for the search of neighbours, in spatial order.
+struct SearchField {
+  const std::int32_t *x = nullptr, *y = nullptr, *z = nullptr;  ///< steps of 2^-32 of the cell's edges
+  const float* reach = nullptr;                                 ///< radius and half the skin
+  std::array<float, 3> edge{};                                  ///< of the cell over 2^32
+};
+
+/// Spheres [begin, end) in spatial order.
+struct SearchRange {
+  std::uint32_t begin = 0, end = 0;
+};
+
+/// Writes to `found` (room for 16 more than all) the spheres of the ranges that are nearer to sphere i than the sum of
+/// their reaches, i itself left out; returns how many.
+std::size_t find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found);
+
+}  // namespace grainlaw::dem

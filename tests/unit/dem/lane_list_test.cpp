@@ -1,0 +1,133 @@
+// Lists of lanes against brute force (hard case D19 for the vector engine), and a state's way through lanes and back.
+#include "dem/lane_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <tuple>
+
+#include "dem/lane_pass.hpp"
+#include "dem/lane_search.hpp"
+#include "dem/lane_state.hpp"
+#include "dem/reference.hpp"
+#include "tests/support/dem_scene.hpp"
+#include "tests/support/dem_state_bits.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+using Pair = std::tuple<std::size_t, std::size_t, int, int, int>;  // i, j, image
+
+/// A random packing of float radii in a rectangular cell, moving, with accelerations and the reference of a list.
+State random_box(std::size_t n, double w, const Eigen::Vector3d& shape, scene::Draw& draw) {
+  State state = scene::random_state(n, w, 0.7, shape.asDiagonal(), draw);
+  Packing& p = state.packing;
+  round_radii(p);
+  scene::random_velocities(p, 1, draw);
+  for (auto* a : {&state.ax, &state.ay, &state.az}) {
+    for (std::size_t i = 0; i < n; ++i) a->push_back(draw.uniform(-1e6, 1e6));
+  }
+  state.ref_x = p.sx, state.ref_y = p.sy, state.ref_z = p.sz, state.ref_H = p.H;
+  return state;
+}
+
+std::set<Pair> pairs_of(const NeighbourList& list) {
+  std::set<Pair> pairs;
+  for (std::size_t i = 0; i + 1 < list.first.size(); ++i) {
+    for (std::size_t c = list.first[i]; c < list.first[i + 1]; ++c) {
+      const Eigen::Vector3i n = list.offset[list.image[c]].cast<int>();
+      EXPECT_TRUE(pairs.emplace(i, list.j[c], n[0], n[1], n[2]).second) << "listed twice: " << i << " " << list.j[c] << " image " << n.transpose();
+    }
+  }
+  return pairs;
+}
+
+/// Every pair nearer than r_i + r_j + reach, from both sides.
+std::set<Pair> brute_force(const Packing& p, double reach) {
+  std::set<Pair> pairs;
+  for (const ReferencePair& pair : reference_pairs(p, reach)) {
+    const Eigen::Vector3i n = pair.image;
+    pairs.emplace(pair.i, pair.j, n[0], n[1], n[2]);
+    pairs.emplace(pair.j, pair.i, -n[0], -n[1], -n[2]);
+  }
+  return pairs;
+}
+
+template <class Real>
+class LaneList : public ::testing::Test {};
+using Precisions = ::testing::Types<float, double>;
+TYPED_TEST_SUITE(LaneList, Precisions);
+
+// All within the skin, nobody from beyond what the search's rounding allows, for any number of lanes in use.
+TYPED_TEST(LaneList, D19EqualsBruteForce) {
+  scene::Draw draw(19);
+  ThreadTeam team(2);
+  int lists = 0;
+  for (const double w : {1.0, 3.0, 10.0}) {
+    for (const Eigen::Vector3d& shape : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(4, 1, 1)}) {
+      for (const std::size_t n : {150, 333, 512}) {
+        const State state = random_box(n, w, shape, draw);
+        const double r_max = *std::max_element(state.packing.radius.begin(), state.packing.radius.end());
+        const double skin = draw.uniform(0.1, 0.8) * mean_radius(state.packing);
+        const Eigen::Vector3d edge = state.packing.H.diagonal();
+        if (!fits_lanes({edge[0], edge[1], edge[2]}, 2 * r_max + skin)) continue;
+        const std::set<Pair> listed =
+            pairs_of(plain_list(make_lanes<TypeParam>(state, 1e-8, skin, 0.1 * skin, team), state.packing));
+        const std::set<Pair> within = brute_force(state.packing, skin * (1 - 1e-9)),
+                             around = brute_force(state.packing, skin + 1e-5 * 2 * r_max);
+        EXPECT_TRUE(std::includes(listed.begin(), listed.end(), within.begin(), within.end())) << "missed";
+        EXPECT_TRUE(std::includes(around.begin(), around.end(), listed.begin(), listed.end())) << "invented";
+        ++lists;
+      }
+    }
+  }
+  EXPECT_GE(lists, 10);
+}
+
+// The near ones are those of the list within the narrow skin, in the same order.
+TYPED_TEST(LaneList, D19NearOnesAreAllThatAreNear) {
+  scene::Draw draw(20);
+  ThreadTeam team(1);
+  const State state = random_box(700, 3, {1, 1.5, 1}, draw);
+  const double r = mean_radius(state.packing), near_skin = 0.1 * r;
+  Lanes<TypeParam> lanes = make_lanes<TypeParam>(state, 1e-8, 0.6 * r, near_skin, team);
+  const double length = lanes.unit.length;
+  const Eigen::Vector3d edge = state.packing.H.diagonal() / length;
+  LaneStep step;
+  write_rows(lanes, step, 0, lanes.group.size());
+  pick_near(lanes, {edge[0], edge[1], edge[2]}, near_skin / length, 0, lanes.group.size());
+  const std::set<Pair> all = pairs_of(plain_list(lanes, state.packing));
+  for (std::size_t g = 0; g < lanes.group.size(); ++g) {  // what lies behind the picked ones is not theirs
+    std::fill(lanes.near_rung.begin() + static_cast<std::ptrdiff_t>(lanes.first_rung[g] + lanes.near_count[g]),
+              lanes.near_rung.begin() + static_cast<std::ptrdiff_t>(lanes.first_rung[g + 1]), lanes.near_rung.back());
+  }
+  lanes.rung.swap(lanes.near_rung);
+  const std::set<Pair> near = pairs_of(plain_list(lanes, state.packing));
+  const std::set<Pair> within = brute_force(state.packing, near_skin * (1 - 1e-4)), around = brute_force(state.packing, near_skin * (1 + 1e-4));
+  EXPECT_TRUE(std::includes(near.begin(), near.end(), within.begin(), within.end())) << "missed";
+  EXPECT_TRUE(std::includes(around.begin(), around.end(), near.begin(), near.end())) << "invented";
+  EXPECT_LT(near.size(), all.size());
+}
+
+// What lanes have stored is theirs again, bit for bit.
+TYPED_TEST(LaneList, AStateGoesThroughLanesUnchanged) {
+  scene::Draw draw(21);
+  ThreadTeam team(1);
+  State once = random_box(100, 3, {1, 1, 1}, draw);
+  const double r = mean_radius(once.packing);
+  store_lanes(make_lanes<TypeParam>(once, 1e-8, 0.3 * r, 0.05 * r, team), once);
+  State twice = once;
+  store_lanes(make_lanes<TypeParam>(twice, 1e-8, 0.3 * r, 0.05 * r, team), twice);
+  EXPECT_EQ(scene::bits_of(twice), scene::bits_of(once));
+}
+
+TEST(FitsLanes, OneImageOnly) {
+  EXPECT_TRUE(fits_lanes({10, 11, 12}, 4.999));
+  EXPECT_FALSE(fits_lanes({10, 11, 12}, 5));
+  EXPECT_FALSE(fits_lanes({12, 11, 9.9}, 4.999));
+}
+
+}  // namespace
+}  // namespace grainlaw::dem
