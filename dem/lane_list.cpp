@@ -12,7 +12,7 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double kRounding = 1e-6;        // of the distances that the search computes in single precision
-constexpr std::size_t kWindow = 512;      // spheres that are sorted by number of neighbours
+constexpr std::size_t kWindow = 2048;      // spheres that are sorted by number of neighbours
 constexpr int kMaxBinsPerAxis = 1024;
 
 using Index3 = std::array<std::uint32_t, 3>;

@@ -16,7 +16,7 @@ class ThreadTeam {
 
   int threads() const;
 
-  /// Calls body(block) once for each block in [0, blocks), from any thread; returns when all are done. An exception
+  /// Calls body(block) once for each block in [0, blocks), equal blocks from equal threads; returns when all are done. An exception
   /// thrown by `body` is rethrown here (the first one).
   void for_each_block(std::size_t blocks, const std::function<void(std::size_t)>& body);
 

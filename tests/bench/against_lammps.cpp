@@ -1,12 +1,13 @@
 // The engine beside Debian's LAMMPS, in turn, on the same packing, the same path and the same number of steps:
-//   bench_engine [--particles N] [--steps K] [--threads T] [--warm-up K] [--nu NU]... FOLDER
-// Packings are prepared once and kept in FOLDER, then sheared by D2 for the steps of the warm-up before the race begins. Prints figures "NAME VALUE" for scripts and a line for readers. Run it
+//   bench_engine [--particles N] [--tiles T] [--steps K] [--threads T] [--warm-up K] [--nu NU]... FOLDER
+// Packings are prepared once and kept in FOLDER, then sheared by D2 for the steps of the warm-up before the race begins; --tiles repeats the packing T times along each axis. Prints figures "NAME VALUE" for scripts and a line for readers. Run it
 // alone on one pinned core (taskset -c 1); two cores for --threads 2.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -28,6 +29,8 @@ struct Result {
   double seconds = 0, P_star = 0, C_star = 0, E_pot = 0;
   double steps_of_a_list = 0;
 };
+
+double wrapped(double s) { return s - std::floor(s); }
 
 dem::State packing_at(const fs::path& folder, std::int64_t particles, double nu) {
   const fs::path file = folder / fmt::format("N{}-{:.2f}.state", particles, nu);  // at rest
@@ -70,6 +73,32 @@ dem::State warmed_up(const dem::State& state, int steps) {
   dem::State warm = sim.state;
   for (auto* a : {&warm.ax, &warm.ay, &warm.az, &warm.ref_x, &warm.ref_y, &warm.ref_z}) a->clear();
   return warm;
+}
+
+/// The packing repeated `tiles` times along each axis: large without being prepared large.
+dem::State tiled(const dem::State& one, int tiles) {
+  dem::State all;
+  all.material = one.material;
+  const dem::Packing& p = one.packing;
+  const auto copies = static_cast<std::size_t>(tiles * tiles * tiles);
+  dem::resize(all.packing, p.size() * copies);
+  dem::Packing& q = all.packing;
+  q.H = p.H * tiles;
+  for (std::size_t k = 0, to = 0; k < copies; ++k) {
+    const auto t = static_cast<std::size_t>(tiles);
+    const Eigen::Vector3d offset(static_cast<double>(k % t), static_cast<double>(k / t % t), static_cast<double>(k / t / t));
+    for (std::size_t i = 0; i < p.size(); ++i, ++to) {
+      q.radius[to] = p.radius[i];
+      q.mass[to] = p.mass[i];
+      q.sx[to] = (wrapped(p.sx[i]) + offset[0]) / tiles;
+      q.sy[to] = (wrapped(p.sy[i]) + offset[1]) / tiles;
+      q.sz[to] = (wrapped(p.sz[i]) + offset[2]) / tiles;
+      q.vx[to] = p.vx[i];
+      q.vy[to] = p.vy[i];
+      q.vz[to] = p.vz[i];
+    }
+  }
+  return all;
 }
 
 Result run_engine(const dem::State& state, const dem::EngineOptions& options, int steps) {
@@ -154,12 +183,13 @@ Result run_lammps(const fs::path& folder, const dem::State& state, double dt, in
 int main(int argc, char** argv) try {
   CLI::App app("The engine beside LAMMPS");
   fs::path folder;
-  std::int64_t particles = 9261;
+  std::int64_t particles = 9261, tiles = 1;
   int steps = 2000, threads = 1, warm_up = 20000;
   std::vector<double> densities{0.66, 0.82};
   bool without_lammps = false;
   app.add_option("folder", folder)->required();
   app.add_option("--particles", particles);
+  app.add_option("--tiles", tiles);
   app.add_option("--steps", steps);
   app.add_option("--threads", threads);
   app.add_option("--warm-up", warm_up);
@@ -168,20 +198,22 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
 
   for (const double nu : densities) {
-    const dem::State state = warmed_up(packing_at(folder, particles, nu), warm_up);
+    const dem::State state = tiled(warmed_up(packing_at(folder, particles, nu), warm_up), static_cast<int>(tiles));
+    const std::size_t all = state.packing.size();
     dem::EngineOptions options;
     options.threads = threads;
-    const double work = 1e-6 * static_cast<double>(particles) * steps;  // 10^6 particle-steps
+    const double work = 1e-6 * static_cast<double>(all) * steps;  // 10^6 particle-steps
     std::map<std::string, Result> results;
     for (const auto& [name, precision] :
          {std::pair{"mixed", dem::Precision::mixed}, {"double", dem::Precision::full}, {"reference", dem::Precision::reference}}) {
+      if (precision == dem::Precision::reference && tiles > 1) continue;
       options.precision = precision;
       results[name] = run_engine(state, options, steps);
     }
     const double dt = options.time_step_fraction * dem::min_collision_time(state.packing, state.material);
     if (!without_lammps) results["lammps"] = run_lammps(folder / "lammps", state, dt, steps);
     for (const auto& [name, r] : results) {
-      const std::string id = fmt::format("{}.N{}.threads{}.nu{:.2f}", name, particles, threads, nu);
+      const std::string id = fmt::format("{}.N{}.threads{}.nu{:.2f}", name, all, threads, nu);
       fmt::print("rate.{} {:.2f}\nP_star.{} {:.9g}\nC_star.{} {:.6g}\nsteps_of_a_list.{} {:.0f}\n", id, work / r.seconds, id, r.P_star, id,
                  r.C_star, id, r.steps_of_a_list);
       fmt::print("E_pot.{} {:.9g}\n", id, r.E_pot);

@@ -23,13 +23,13 @@ using scene::Family;
 using testing::figure;
 
 TEST(EnergyBalance, D9UniaxialCompressionOfJammedPackings) {
-  figure("D9.four_packings", scene::compress_several(300, 0.75, 4, 50).residual_over_lost(), 1e-4);
+  figure("D9.four_packings", scene::compress_several(300, 0.75, 4, 50).residual_over_lost(), scene::energy_line());
 }
 
 TEST(EnergyBalance, D9WallDriven) {
   DriveOptions options;
   options.transport = Transport::wall;
-  figure("D9.wall", scene::compress_several(300, 0.75, 2, 50, options).residual_over_lost(), 1e-4);
+  figure("D9.wall", scene::compress_several(300, 0.75, 2, 50, options).residual_over_lost(), scene::energy_line());
 }
 
 /// Shaken packings, compressed within 20 us: short enough for every step size to follow the same path, with thousands
@@ -105,7 +105,7 @@ TEST_P(EnergyBalanceOfFamily, D9D20UniaxialCompression) {
   const double t_mean = collision_time(start.material, reduced_mass(m, m));
   const double t_min = min_collision_time(start.packing, start.material);
   const EnergyAccount account = scene::compress(start, std::max(50.0, 141 * t_min / t_mean));
-  figure(scene::figure_name("D9", GetParam()), account.residual_over_lost(), 1e-4);
+  figure(scene::figure_name("D9", GetParam()), account.residual_over_lost(), scene::energy_line());
 }
 
 INSTANTIATE_TEST_SUITE_P(D20, EnergyBalanceOfFamily, ::testing::ValuesIn(scene::families()), scene::name_of_family);

@@ -1,0 +1,85 @@
+#!/usr/bin/env bash
+# tests/acceptance/engine.sh [--quick]: the engine's speed beside LAMMPS, its precision and its bits, one line each:
+#   NAME VALUE BOUND ok|short          exit 0 only if none is short
+# --quick: ratios at both densities and precisions on one core, the precision table, hashes over threads and vector
+# instructions, restart points. Otherwise also two cores, a million spheres, and the quickstart's time.
+# Run it alone: speeds are measured side by side on a pinned core. The first run prepares packings (two minutes).
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cd "$here/../.."
+# shellcheck source=tests/acceptance/figures.sh
+. "$here/figures.sh"
+quick=no
+case $#:${1:-} in
+  0:) ;;
+  1:--quick) quick=yes ;;
+  *) sed -n 's/^# //; 2,6p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
+
+./install-packages.sh >&2
+cmake --preset release --log-level=WARNING >&2
+cmake --build build/release --parallel "$(nproc)" >&2
+bin=build/release/bin
+out=$PWD/build/acceptance/engine
+mkdir -p "$out"
+
+value_of() { # name file
+  awk -v name="$1" '$1 == name { value = $2 } END { print value == "" ? "missing" : value }' "$2"
+}
+quotient() { awk -v a="$1" -v b="$2" 'BEGIN { print (a ~ /^[0-9.e+-]+$/ && b + 0 > 0) ? a / b : "missing" }'; }
+deviation() { awk -v a="$1" -v b="$2" 'BEGIN { d = b + 0 != 0 ? a / b - 1 : "missing"; print d < 0 ? -d : d }'; }
+
+race() { # log option...
+  taskset -c 0 $bin/bench_engine "${@:2}" "$out" >"$1" 2>"$1.err" || tail -3 "$1.err" >&2
+}
+
+# Same packing, same steps, same core; the results must agree before a ratio means anything.
+beside_lammps() {
+  local nu id other
+  race "$out/one-core.txt"
+  for nu in 0.66 0.82; do
+    id=N9261.threads1.nu$nu other=$(value_of "P_star.lammps.N9261.threads1.nu$nu" "$out/one-core.txt")
+    figure "rate.lammps.$id" "$(value_of "rate.lammps.$id" "$out/one-core.txt")" stated
+    for precision in mixed double; do
+      figure "rate.$precision.$id" "$(value_of "rate.$precision.$id" "$out/one-core.txt")" stated
+      figure "P_star.$precision.$id.off_lammps" "$(deviation "$(value_of "P_star.$precision.$id" "$out/one-core.txt")" "$other")" "<=0.02"
+      figure "E_pot.$precision.$id.off_lammps" "$(deviation "$(value_of "E_pot.$precision.$id" "$out/one-core.txt")" \
+        "$(value_of "E_pot.lammps.$id" "$out/one-core.txt")")" "<=0.02"
+      figure "C_star.$precision.$id.off_lammps" "$(deviation "$(value_of "C_star.$precision.$id" "$out/one-core.txt")" \
+        "$(value_of "C_star.lammps.$id" "$out/one-core.txt")")" "<=0.02"
+    done
+    figure "ratio.mixed.$id" "$(value_of "ratio.mixed.$id" "$out/one-core.txt")" ">=10"
+    figure "ratio.double.$id" "$(value_of "ratio.double.$id" "$out/one-core.txt")" ">=3"
+  done
+}
+
+other_sizes() {
+  local nu
+  $bin/bench_engine --without-lammps --threads 2 "$out" >"$out/two-cores.txt"
+  race "$out/million.txt" --without-lammps --tiles 5 --steps 40
+  for nu in 0.66 0.82; do
+    for precision in mixed double; do
+      figure "two_cores.$precision.nu$nu" "$(quotient "$(value_of "rate.$precision.N9261.threads2.nu$nu" "$out/two-cores.txt")" \
+        "$(value_of "rate.$precision.N9261.threads1.nu$nu" "$out/one-core.txt")")" ">=1.8"
+      figure "cost_at_a_million.$precision.nu$nu" "$(quotient "$(value_of "rate.$precision.N9261.threads1.nu$nu" "$out/one-core.txt")" \
+        "$(value_of "rate.$precision.N1157625.threads1.nu$nu" "$out/million.txt")")" "<=1.5"
+    done
+  done
+}
+
+quickstart() {
+  rm -rf "$out/quickstart"
+  examples/quickstart/run.sh "$out/quickstart" >"$out/quickstart.txt" 2>"$out/quickstart.err"
+  figure quickstart.seconds "$(sed -n 's/^Whole chain after the build: \([0-9]*\) s.*/\1/p' "$out/quickstart.txt")" "<=120"
+}
+
+beside_lammps
+figures_of_tests $bin/verification_dem 'Precision*:PortableBits.*:Threads.*' precision.mixed.force precision.mixed.P_star \
+  precision.statistics R2.differing_targets R1.differing_hashes
+GRAINLAW_TEST_PRECISION=mixed figures_of_tests $bin/verification_dem 'Restart.R5*:Threads.*' R5.differing_restarts R1.differing_hashes
+if [[ $quick == no ]]; then
+  other_sizes
+  quickstart
+fi
+finish_figures
