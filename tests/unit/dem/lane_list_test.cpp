@@ -67,7 +67,7 @@ TYPED_TEST(LaneList, D19EqualsBruteForce) {
   int lists = 0;
   for (const double w : {1.0, 3.0, 10.0}) {
     for (const Eigen::Vector3d& shape : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(4, 1, 1)}) {
-      for (const std::size_t n : {150, 333, 512}) {
+      for (const std::size_t n : {150U, 333U, 512U}) {
         const State state = random_box(n, w, shape, draw);
         const double r_max = *std::max_element(state.packing.radius.begin(), state.packing.radius.end());
         const double skin = draw.uniform(0.1, 0.8) * mean_radius(state.packing);

@@ -81,7 +81,7 @@ TEST(PrecisionTable, ForcesAndPressure) {
   std::vector<std::vector<std::string>> rows;
   for (const double nu : {0.70, 0.74, 0.82}) {
     Errors worst_mixed, worst_double;
-    for (const std::uint64_t seed : {3, 4}) {
+    for (const std::uint64_t seed : {3U, 4U}) {
       const State state = scene::jammed({"Paper", 3}, 1000, nu, seed);
       const Errors mixed = force_errors<float>(state), full = force_errors<double>(state);
       worst_mixed = {std::max(worst_mixed.force, mixed.force), std::max(worst_mixed.max_force, mixed.max_force), std::max(worst_mixed.pressure, mixed.pressure)};
@@ -151,6 +151,9 @@ TEST(PortableBits, R2SameOnAllVectorInstructions) {
     options.portable_bits = true;
     use_vector_target("");
     const auto expected = bits_after(moving_packing(), options, 200);
+    std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a by words: to be compared between compilers
+    for (const std::uint64_t word : expected) hash = (hash ^ word) * 0x100000001b3;
+    fmt::print("hash R2.{} {:016x}\n", precision == Precision::mixed ? "mixed" : "double", hash);
     for (const std::string& target : targets) {
       use_vector_target(target);
       differing += bits_after(moving_packing(), options, 200) == expected ? 0 : 1;
