@@ -4,7 +4,7 @@ grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
 
 cat >spec.json <<'JSON'
-{"particles": 1000, "seeds": [1, 2], "strain_rate": 2000, "rows": 60, "keep": [0.72], "densities": [0.70, 0.74, 0.78],
+{"particles": 600, "seeds": [1, 2], "strain_rate": 2000, "rows": 60, "keep": [0.72], "densities": [0.70, 0.74, 0.78],
  "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration"}, {"mode": "D2-ISO", "role": "calibration"},
            {"mode": "UNI", "density": 0.70, "strain": 0.02, "role": "validation"}]}
 JSON
