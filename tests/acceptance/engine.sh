@@ -24,9 +24,6 @@ bin=build/release/bin
 out=$PWD/build/acceptance/engine
 mkdir -p "$out"
 
-value_of() { # name file
-  awk -v name="$1" '$1 == name { value = $2 } END { print value == "" ? "missing" : value }' "$2"
-}
 quotient() { awk -v a="$1" -v b="$2" 'BEGIN { print (a ~ /^[0-9.e+-]+$/ && b + 0 > 0) ? a / b : "missing" }'; }
 deviation() { awk -v a="$1" -v b="$2" 'BEGIN { d = b + 0 != 0 ? a / b - 1 : "missing"; print d < 0 ? -d : d }'; }
 

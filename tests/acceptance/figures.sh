@@ -39,6 +39,11 @@ curve_error() { # calibration.json quantity from to
                | (.ours - .published) / .published | fabs] | if length > 0 then max else "missing" end' "$1"
 }
 
+# A value that a script or test printed as "NAME VALUE", "missing" otherwise.
+value_of() { # name file
+  awk -v name="$1" '$1 == name { value = $2 } END { print value == "" ? "missing" : value }' "$2"
+}
+
 finish_figures() {
   if ((short_figures > 0)); then
     echo "$short_figures figures are short" >&2

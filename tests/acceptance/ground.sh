@@ -24,11 +24,6 @@ bin=build/release/bin
 out=$PWD/build/acceptance
 mkdir -p "$out"
 
-# A value that a script or test printed as "NAME VALUE", "missing" otherwise.
-value_of() { # name file
-  awk -v name="$1" '$1 == name { value = $2 } END { print value == "" ? "missing" : value }' "$2"
-}
-
 # Each line of hard_cases.txt is run; a case counts as passed when all its tests ran and passed.
 hard_cases() {
   local id executable filter listed=0 passed=0 log
