@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/engine_path.hpp"
 #include "app/files/preparation_json.hpp"
 #include "model/error.hpp"
 
@@ -41,7 +42,7 @@ std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std:
   if (std::find(kept.begin(), kept.end(), path.path.nu) == kept.end()) kept.push_back(path.path.nu);
   std::sort(kept.begin(), kept.end());
   complete_preparation(preparation, name);
-  const double steps = expected_steps(preparation, resolve(path.path));
+  const double steps = expected_steps(preparation, engine_path(path.path, name));
   if (!(steps <= kMaxSteps))
     throw InvalidInput(
         fmt::format("{}: segments: take {:.3g} steps, more than {:.0g}; shorten the path", name, steps, kMaxSteps));

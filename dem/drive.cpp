@@ -11,7 +11,10 @@
 namespace grainlaw::dem {
 namespace {
 
-bool is_diagonal(const Eigen::Matrix3d& D) { return (D - Eigen::Matrix3d(D.diagonal().asDiagonal())).norm() == 0; }
+bool is_upright(const StraightSegment& segment) {
+  const Eigen::Matrix3d& D = segment.direction.tensor;
+  return (D - Eigen::Matrix3d(D.diagonal().asDiagonal())).norm() == 0 && segment.spin.isZero(0);
+}
 
 /// Rate of the edge that the cosine prescribes: the most compressed one, or the most stretched where none shrinks.
 double leading_rate(const Eigen::Matrix3d& D) {
@@ -21,9 +24,19 @@ double leading_rate(const Eigen::Matrix3d& D) {
 
 }  // namespace
 
+void check_can_follow(const std::vector<StraightSegment>& segments) {
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    if (is_upright(segments[k])) continue;
+    throw InvalidInput(
+        fmt::format("segments[{}]: the engine deforms the cell along its axes only; give a diagonal rate_tensor, or "
+                    "ask the law alone (grainlaw predict without --dem)",
+                    k));
+  }
+}
+
 Drive make_drive(const StraightSegment& segment, const DriveOptions& options, const Eigen::Matrix3d& H_0) {
-  if (!is_diagonal(segment.direction.tensor)) {
-    throw InvalidInput("rate_tensor: the engine deforms the cell along its axes only; give a diagonal tensor");
+  if (!is_upright(segment)) {
+    throw InvalidInput("the engine deforms the cell along its axes only; give a diagonal rate_tensor");
   }
   if (!(options.strain_rate > 0) || !std::isfinite(options.strain_rate)) {
     throw InvalidInput("strain_rate: must be positive and finite");

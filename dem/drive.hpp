@@ -28,7 +28,10 @@ struct Drive {
   double duration = 0;                                ///< tau [s]
 };
 
-/// Throws InvalidInput unless D is diagonal (other cells: a later command) and the strain rate positive and finite.
+/// Throws InvalidInput naming the first segment that the engine cannot follow: it deforms the cell along its axes only.
+void check_can_follow(const std::vector<StraightSegment>& segments);
+
+/// Throws InvalidInput unless D is diagonal and without spin and the strain rate positive and finite.
 Drive make_drive(const StraightSegment& segment, const DriveOptions& options, const Eigen::Matrix3d& H_0);
 
 double path_parameter(const Drive& drive, double t);       ///< e(t), exact at both ends [-]

@@ -17,7 +17,8 @@ struct PathFile {
   std::optional<int> rows;           ///< rows of each segment
 };
 
-/// Throws InvalidInput naming file, key, reason and remedy.
+/// Reads the file and the strain_csv that it may name (relative to its folder). Throws InvalidInput naming file, key or
+/// row, reason and remedy.
 PathFile read_path(const std::filesystem::path& file);
 
 }  // namespace grainlaw::app

@@ -1,5 +1,6 @@
 #pragma once
-// Strain paths in JSON: {initial: {nu, branch}, segments: [{mode | rate_tensor, axes, reverse, extent}]}.
+// Strain paths in JSON: {initial: {nu, branch}, segments: [{mode | rate_tensor | velocity_gradient, axes, reverse, free,
+// extent | cycles}]}. Cycles are written out as segments when they are read.
 
 #include "app/files/json_document.hpp"
 #include "model/path.hpp"
@@ -8,8 +9,8 @@ namespace grainlaw::app {
 
 /// `document` has passed its schema; `name` is the file and `place` the key in front of "initial" for messages, e.g. ""
 /// or "tests[0].path.". A segment with both mode and rate_tensor takes the direction of the tensor and the name of the
-/// mode; `both` says whether that is allowed (files written by path_to_json have both). Throws InvalidInput, also for
-/// extents that cannot be reached and volume fractions beyond 0.9.
+/// mode; `both` says whether that is allowed (files written by path_to_json have both). Throws InvalidInput for whatever
+/// check(path) does.
 Path path_from_json(const Json& document, const std::string& name, const std::string& place, bool both);
 
 std::vector<PathSegment> segments_from_json(const Json& segments, const std::string& name, const std::string& place,

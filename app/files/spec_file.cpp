@@ -91,7 +91,9 @@ void check_tests(const Spec& spec, const std::string& name) {
       }
       if (test.mode == "ISO") continue;
       try {
-        const double steps = expected_steps(spec.preparation, resolve(path_of(test, nu, spec)));
+        const std::vector<StraightSegment> path = resolve(path_of(test, nu, spec));
+        dem::check_can_follow(path);
+        const double steps = expected_steps(spec.preparation, path);
         if (!(steps <= kMaxSteps))
           refuse(fmt::format(": takes {:.3g} steps, more than {:.0g}; give a larger strain_rate", steps, kMaxSteps));
       } catch (const InvalidInput& error) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/digest.hpp"
+#include "app/engine_path.hpp"
 #include "app/files/path_json.hpp"
 #include "app/files/preparation_json.hpp"
 #include "app/files/schema.hpp"
@@ -88,7 +89,7 @@ TestFile read_test(const std::filesystem::path& file) {
             {"segments", document.value("segments", Json::array())}};
   if (test.given) path["initial"]["nu"] = dem::volume_fraction(test.given->packing);
   test.path = path_from_json(path, name, "", false);
-  if (const double steps = expected_steps(preparation, resolve(test.path)); !(steps <= kMaxSteps)) {
+  if (const double steps = expected_steps(preparation, engine_path(test.path, name)); !(steps <= kMaxSteps)) {
     throw InvalidInput(
         fmt::format("{}: strain_rate: the test would take {:.3g} steps, more than {:.0g}; give a larger one", name,
                     steps, kMaxSteps));

@@ -65,6 +65,127 @@ TEST(Examples, AreValidInput) {
   }
 }
 
+TEST_F(PathFiles, VelocityGradientsAreRateAndSpin) {
+  const PathFile file = read_path(put("p.json", R"({"initial": {"nu": 0.7}, "segments": [
+      {"velocity_gradient": [[0, 0, 1], [0, 0, 0], [0, 0, 0]], "extent": {"eps_dev": 0.1}}]})"));
+  const PathSegment& simple_shear = file.path.segments.at(0);
+  EXPECT_EQ(simple_shear.direction.tensor(0, 2), 0.5);
+  EXPECT_EQ(simple_shear.direction.tensor(2, 0), 0.5);
+  EXPECT_EQ(simple_shear.spin(0, 2), 0.5);
+  EXPECT_EQ(simple_shear.spin(2, 0), -0.5);
+  EXPECT_EQ(path_to_json(path_from_json(Json(path_to_json(file.path)), "p.json", "", true)), path_to_json(file.path));
+  EXPECT_EQ(resolve(file.path)[0].spin, simple_shear.spin);
+
+  EXPECT_NE(path_refusal(R"({"initial": {"nu": 0.7}, "segments": [
+      {"velocity_gradient": [[0, 0, 1], [0, 0, 0], [-1, 0, 0]], "extent": {"eps_dev": 0.1}}]})")
+                .find("segments[0].velocity_gradient: is zero but for its spin"),
+            std::string::npos);
+  EXPECT_NE(test_refusal(R"({"initial": {"nu": 0.7}, "segments": [
+      {"velocity_gradient": [[0, 0, 1], [0, 0, 0], [0, 0, 0]], "extent": {"eps_dev": 0.1}}]})")
+                .find("t.json: segments[0]: the engine deforms the cell along its axes only"),
+            std::string::npos);
+}
+
+TEST_F(PathFiles, CyclesBecomeLegs) {
+  const auto strains = [&](const std::string& segment) {
+    std::vector<double> corners{0};
+    for (const StraightSegment& s :
+         resolve(read_path(put("p.json", R"({"initial": {"nu": 0.7}, "segments": [)" + segment + "]}")).path)) {
+      // D2 has eps_zz = -eps_dev/sqrt3, ISO eps_zz = eps_vol/3
+      corners.push_back(s.strain(s.length).tensor(2, 2));
+    }
+    return corners;
+  };
+  const auto expect = [](const std::vector<double>& got, const std::vector<double>& wanted) {
+    ASSERT_EQ(got.size(), wanted.size());
+    for (std::size_t i = 0; i < got.size(); ++i) EXPECT_NEAR(got[i], wanted[i], 1e-15) << i;
+  };
+  const double a = 0.05 / std::numbers::sqrt3;
+  expect(strains(R"({"mode": "D2", "cycles": {"amplitude": 0.05, "count": 2}})"), {0, -a, a, -a, a, 0});
+  expect(strains(R"({"mode": "D2", "reverse": true, "cycles": {"amplitude": 0.05, "count": 1}})"), {0, a, -a, 0});
+  expect(strains(R"({"mode": "D2", "cycles": {"amplitude": 0.05, "count": 2, "one_sided": true}})"), {0, -a, 0, -a, 0});
+  expect(strains(R"({"mode": "ISO", "cycles": {"amplitude": 0.06, "count": 1, "one_sided": true}})"), {0, -0.02, 0});
+
+  EXPECT_EQ(read_test(put("t.json", R"({"initial": {"nu": 0.7}, "segments": [
+      {"mode": "D2", "cycles": {"amplitude": 0.05, "count": 3}}]})"))
+                .path.segments.size(),
+            7u);
+  const auto refused = [&](const std::string& segment) {
+    return path_refusal(R"({"initial": {"nu": 0.7}, "segments": [)" + segment + "]}");
+  };
+  EXPECT_NE(refused(R"({"mode": "D2", "cycles": {"amplitude": 0.1, "count": 1}, "extent": {"eps_dev": 0.1}})")
+                .find("segments[0]: has extent and cycles"),
+            std::string::npos);
+  EXPECT_NE(
+      refused(R"({"mode": "D2", "cycles": {"amplitude": 0.1, "count": 0}})").find("segments[0].cycles.count: got 0"),
+      std::string::npos);
+  EXPECT_NE(refused(R"({"mode": "D2", "cycles": {"count": 1}})").find("misses the key 'amplitude'"), std::string::npos);
+}
+
+TEST_F(PathFiles, FreeRatesKeepToConditions) {
+  const std::string triaxial = R"({"initial": {"nu": 0.7}, "segments": [{"mode": "UNI", "extent": {"eps_dev": 0.1},
+      "free": {"xx": {"quantity": "stress"}, "yy": {"quantity": "stress", "rate": 0.01}}}]})";
+  const PathFile file = read_path(put("p.json", triaxial));
+  const auto& conditions = file.path.segments.at(0).conditions;
+  ASSERT_EQ(conditions.size(), 2u);
+  EXPECT_EQ(conditions[0].free, 0);
+  EXPECT_EQ(conditions[0].quantity, Condition::Quantity::stress);
+  EXPECT_EQ(conditions[0].rate, 0);
+  EXPECT_EQ(conditions[1].free, 1);
+  EXPECT_EQ(conditions[1].rate, 0.01);
+  EXPECT_EQ(path_to_json(path_from_json(Json(path_to_json(file.path)), "p.json", "", true)), path_to_json(file.path));
+  EXPECT_NE(test_refusal(triaxial).find("t.json: segments[0]: its free leaves the strain to the law"),
+            std::string::npos);
+
+  const auto refused = [&](const std::string& free) {
+    return path_refusal(
+        R"({"initial": {"nu": 0.7}, "segments": [{"mode": "UNI", "extent": {"eps_dev": 0.1}, "free": )" + free + "}]}");
+  };
+  EXPECT_NE(refused(R"({"zz": {"quantity": "stress"}})").find("p.json: segments[0].free: zz is free and has a rate"),
+            std::string::npos);
+  EXPECT_NE(refused(R"({"volume": {"quantity": "stress"}})").find("segments[0].free: volume"), std::string::npos);
+  EXPECT_NE(refused(R"({"xx": {"quantity": "force"}})").find("segments[0].free.xx.quantity: got \"force\""),
+            std::string::npos);
+  EXPECT_NE(refused(R"({"xz": {}})").find("segments[0].free.xz: misses the key 'quantity'"), std::string::npos);
+}
+
+TEST_F(PathFiles, MeasuredStrainsBecomeSegments) {
+  const auto path = put("p.json", R"({"initial": {"nu": 0.7}, "strain_csv": "m.csv"})");
+  // two collinear rows of UNI, a repeated row, and a shear; other columns do not matter
+  put("m.csv",
+      "time[s],strain_xx,strain_yy,strain_zz,strain_xz\n0,0.1,0,0,0\n1,0.1,0,-0.01,0\n2,0.1,0,-0.04,0\n3,0.1,0,-0.04,"
+      "0\n"
+      "4,0.1,0,-0.04,0.02\n");
+  const auto segments = resolve(read_path(path).path);
+  ASSERT_EQ(segments.size(), 2u);
+  EXPECT_NEAR(segments[1].strain_start.tensor(2, 2), -0.04, 1e-15);
+  EXPECT_NEAR(segments[1].nu_start, 0.7 * std::exp(0.04), 1e-15);
+  const Eigen::Matrix3d end = segments[1].strain(segments[1].length).tensor;
+  EXPECT_NEAR(end(0, 2), 0.02, 1e-15);
+  EXPECT_NEAR(end(0, 0), 0, 1e-15) << "counted from the first row";
+
+  const auto refused = [&](const std::string& csv) {
+    put("m.csv", csv);
+    return without_folder(refusal([&] { read_path(path); }));
+  };
+  EXPECT_NE(refused("strain_xx,strain_yy\n0,0\n").find("m.csv: header, column 'strain_zz': is missing"),
+            std::string::npos);
+  EXPECT_NE(refused("strain_xx,strain_yy,strain_zz\n0,0,0\n0,,0\n").find("m.csv: row 2, column 'strain_yy': is empty"),
+            std::string::npos);
+  EXPECT_NE(refused("strain_xx,strain_yy,strain_zz\n0,0,0\n0,0,x\n").find("m.csv: row 2, column 'strain_zz': 'x'"),
+            std::string::npos);
+  EXPECT_NE(
+      refused("strain_xx,strain_yy,strain_zz\n0,0,0\n0,0,-1\n").find("m.csv: row 2, column 'strain_xx': the strain"),
+      std::string::npos);
+  EXPECT_NE(refused("strain_xx,strain_yy,strain_zz\n0,0,0\n0,0,0\n").find("the strain never changes"),
+            std::string::npos);
+  EXPECT_NE(path_refusal(R"({"initial": {"nu": 0.7}})").find("misses the key 'segments'"), std::string::npos);
+  EXPECT_NE(path_refusal(R"({"initial": {"nu": 0.7}, "strain_csv": "m.csv", "segments": [
+      {"mode": "D2", "extent": {"eps_dev": 0.1}}]})")
+                .find("give one of them"),
+            std::string::npos);
+}
+
 TEST_F(PathFiles, AreRefusedNamingTheSegment) {
   const auto segment = [&](const std::string& s) {
     return path_refusal(R"({"initial": {"nu": 0.7}, "segments": [)" + s + "]}");

@@ -125,6 +125,68 @@ TEST(Path, RefusesNumbersThatAreNone) {
   EXPECT_NE(refusal(path_of(0.7, {still})), "");
 }
 
+TEST(Path, TargetOfEpsDevCountsFromTheStart) {
+  const auto to = [](double target, bool reverse = false) {
+    return segment(Mode::D2, ExtentKind::target_eps_dev, target, reverse);
+  };
+  const auto s = resolve(path_of(0.7, {to(0.1), to(0.3), to(0.2, true), to(0.25)}));
+  const double expected[] = {0.1, 0.2, 0.1, 0.05};
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(s[k].length * std::sqrt(3.0), expected[k], 1e-15) << k;
+  // D2 about another axis meets the circle |eps'| = t at right angles no more: against the definition
+  PathSegment oblique{Mode::D2, direction_of(Mode::D2, "zxy"), ExtentKind::target_eps_dev, 0.35};
+  const auto bent = resolve(path_of(0.7, {to(0.3), oblique}));
+  EXPECT_NEAR(deviatoric_norm(bent[1].strain(bent[1].length).tensor), 0.35, 1e-15);
+  EXPECT_NE(refusal(path_of(0.7, {to(0.3), to(0.1)})).find("segments[1].extent: target_eps_dev 0.1"), std::string::npos)
+      << "lies behind";
+  EXPECT_NE(refusal(path_of(0.7, {segment(Mode::ISO, ExtentKind::target_eps_dev, 0.1)})), "");
+}
+
+TEST(Path, WhatTheLawDecidesIsCheckedButNotResolved) {
+  PathSegment triaxial{Mode::UNI, direction_of(Mode::UNI), ExtentKind::eps_dev, 0.1};
+  triaxial.conditions = {{0, Condition::Quantity::stress, 0}, {1, Condition::Quantity::stress, 0}};
+  const PathSegment first = segment(Mode::D2, ExtentKind::eps_dev, 0.1);
+  for (const PathSegment& open : {triaxial, segment(Mode::ISO, ExtentKind::target_P_star, 0.05),
+                                  segment(Mode::D2, ExtentKind::target_stress_ratio, 0.1)}) {
+    EXPECT_TRUE(law_decides(open));
+    EXPECT_TRUE(law_decides(path_of(0.7, {first, open})));
+    EXPECT_NO_THROW(check(path_of(0.7, {first, open, first})));
+    EXPECT_NE(refusal(path_of(0.7, {first, open, first})).find("segments[1]: its "), std::string::npos);
+  }
+  EXPECT_FALSE(law_decides(path_of(0.7, {first})));
+
+  const auto wrong = [](const PathSegment& open) {
+    try {
+      check(path_of(0.7, {open}));
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  PathSegment bad = triaxial;
+  bad.conditions[0].free = 2;
+  EXPECT_NE(wrong(bad).find("segments[0].free: zz is free and has a rate too"), std::string::npos);
+  bad = triaxial;
+  bad.conditions[1].free = 0;
+  EXPECT_NE(wrong(bad).find("xx is given twice"), std::string::npos);
+  bad.conditions = {{Condition::volume, Condition::Quantity::stress, 0}};
+  EXPECT_NE(wrong(bad).find("volume: a stress is held"), std::string::npos);
+  bad.conditions = {{0, Condition::Quantity::P_star, kNaN}};
+  EXPECT_NE(wrong(bad), "");
+  bad = triaxial;
+  bad.extent = 0;
+  EXPECT_NE(wrong(bad), "");
+}
+
+TEST(Path, FreeDirections) {
+  EXPECT_EQ(free_direction({Condition::volume}).tensor.trace(), 1);
+  EXPECT_EQ(deviatoric_norm(free_direction({Condition::volume}).tensor), 0);
+  const Eigen::Matrix3d yz = free_direction({3}).tensor;
+  EXPECT_EQ(yz(1, 2), 1);
+  EXPECT_EQ(yz(2, 1), 1);
+  EXPECT_EQ(yz.cwiseAbs().sum(), 2);
+  EXPECT_EQ(free_name({0}) + free_name({5}) + free_name({Condition::volume}), "xxxyvolume");
+}
+
 TEST(Path, NamesOfModesAndBranches) {
   EXPECT_EQ(to_string(Mode::ISO) + to_string(Mode::UNI) + to_string(Mode::D2) + to_string(Mode::D3), "ISOUNID2D3");
   EXPECT_EQ(to_string(Branch::loading), "loading");
