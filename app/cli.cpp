@@ -49,7 +49,8 @@ void add_common(CLI::App& command, Common& common) {
 void add_checkpoints(CLI::App& command, Common& common) {
   command.add_flag("--resume,!--no-resume", common.resume,
                    "go on from the checkpoints of interrupted runs (default); --no-resume starts them anew");
-  command.add_option("--checkpoint", common.checkpoint_interval, "seconds between two checkpoints of a run; 0: every step")
+  command
+      .add_option("--checkpoint", common.checkpoint_interval, "seconds between two checkpoints of a run; 0: every step")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
 }
@@ -86,9 +87,11 @@ void add_predict(CLI::App& app, Common& common, Task& task) {
   command->add_option("PATH", options->path, "PATH.json")->required();
   command->add_option("-o,--output", options->output, "folder of the prediction")->required();
   command->add_flag("--dem", options->dem, "run the path in the engine on new packings and compare");
-  command->add_option("--model", options->model, "reduced or evolution; default: both")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, predict::Model>{
-          {"reduced", predict::Model::reduced}, {"evolution", predict::Model::evolution}}));
+  command
+      ->add_option("--model", options->model,
+                   "rung of the law: reduced, evolution or memory; default: those that are calibrated")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Rung>{
+          {"reduced", Rung::reduced}, {"evolution", Rung::evolution}, {"memory", Rung::memory}}));
   command
       ->add_option("--initial", options->initial,
                    "start from the law or from measured values; default: law, with --dem both")
@@ -135,8 +138,10 @@ int perform(const Task& task, const Common& common, const std::string& command) 
   try {
     const InterruptGuard interrupt;
     ProgressPrinter progress(stderr, common.quiet);
-    Session session{command,  common.threads, common.json,   interrupt.token(),
-                    progress, {},             common.resume, common.checkpoint_interval};
+    Session session{command,       common.threads,
+                    common.json,   interrupt.token(),
+                    progress,      {},
+                    common.resume, common.checkpoint_interval};
     return static_cast<int>(task(session));
   } catch (const InvalidInput& error) {
     return fail(ExitCode::invalid_input, error.what());

@@ -9,76 +9,63 @@
 // On monotone shear with A1 = 0 this is Eqs. (17) and (18) exactly.
 // Templated on the scalar of the parameters and of the state; no solver's header in here.
 
+#include "model/law_state.hpp"
 #include "model/parameters.hpp"
-#include "model/tensor.hpp"
 
 namespace grainlaw {
 
-/// State of the law, or its rate.
-template <class T>
-struct LawState {
-  T P{};              ///< pressure P* [-]
-  Deviator<T> sigma;  ///< deviatoric stress times 2<r>/k, compression positive [-]
-  Deviator<T> F;      ///< deviatoric fabric, compression positive [-]
-};
-
-/// Direction of a straight segment as the law needs it, per unit of the path parameter.
-struct LawDirection {
-  double dx = 0;                                          ///< -tr D: volumetric compression [-]
-  double de = 0;                                          ///< |D|_dev >= 0 [-]
-  Deviator<double> N = Deviator<double>::Zero();          ///< -D'/|D|_dev, zero without shear [-]
-};
-
-/// From a strain-rate direction (tension positive).
-inline LawDirection law_direction(const StrainRate& rate) {
-  LawDirection direction;
-  direction.dx = -rate.tensor.trace();
-  const Deviator<double> d = -deviator<double>(rate.tensor);
-  const double norm = d.norm();
-  if (norm > 1e-12 * rate.tensor.norm()) {
-    direction.de = norm;
-    direction.N = d / norm;
-  }
-  return direction;
-}
-
-/// What the right-hand side takes from the volume fraction alone; worth keeping where that does not change.
+/// What a right-hand side takes from the volume fraction alone; worth keeping where that does not change.
 template <class T>
 struct LawModuli {
-  T B{};       ///< bulk modulus B* [-]
+  T B{};       ///< bulk modulus B* of ISO unloading [-]
   T s_max{};   ///< limit of the stress ratio [-]
   T beta_s{};  ///< its growth rate [-]
   T F_max{};   ///< limit of the deviatoric fabric [-]
   T beta_F{};  ///< its growth rate [-]
+  // of the memory rung only
+  T nu{};        ///< volume fraction [-]
+  T P_iso{};     ///< pressure of ISO unloading, Eq. (14) [-]
+  T P_steady{};  ///< pressure of steady shear [-]
 };
 
 template <class T>
 LawModuli<T> moduli_at(const LawParameters<T>& p, double nu) {
-  return {p.isotropic.B_star(nu), p.stress_ratio_max.value(nu, p.shear_nu_c), p.stress_rate.value(nu, p.shear_nu_c),
-          p.fabric_max.value(nu, p.shear_nu_c), p.fabric_rate.value(nu, p.shear_nu_c)};
+  LawModuli<T> m;
+  m.B = p.isotropic.B_star(nu);
+  m.s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
+  m.beta_s = p.stress_rate.value(nu, p.shear_nu_c);
+  m.F_max = p.fabric_max.value(nu, p.shear_nu_c);
+  m.beta_F = p.fabric_rate.value(nu, p.shear_nu_c);
+  return m;
 }
 
-/// Right-hand side of Eq. (16): d(state)/de with the moduli of the current volume fraction. Finite for P > 0 and finite
-/// arguments.
+/// The moduli that couple the volumetric and the deviatoric part.
+template <class T>
+struct AnisotropyModuli {
+  T A1{};        ///< of the pressure row, along N [-]
+  T A2_per_F{};  ///< of the deviatoric row, dsigma' = A2_per_F F' dx [-]
+};
+
+template <class T>
+AnisotropyModuli<T> anisotropy_moduli(const Anisotropy<T>& a, Coupling coupling, const T& B, const LawState<T>& y,
+                                      const Deviator<T>& N) {
+  if (coupling == Coupling::single) return {a.a0 * y.F.dot(N), a.a0 / 3.0};
+  const T A2_per_F = a.a2 * B;
+  return {(2.0 / 3.0) * (A2_per_F * y.F.dot(N) - y.sigma.dot(N)), A2_per_F};
+}
+
+/// Right-hand side of Eq. (16) without corotational terms: d(state)/de with the moduli of the current volume fraction.
+/// Finite for P > 0 and finite arguments.
 template <class T>
 LawState<T> evolution_rate(const LawModuli<T>& m, const Anisotropy<T>& anisotropy, Coupling coupling,
                            const LawState<T>& y, const LawDirection& direction) {
   const Deviator<T> N = direction.N.template cast<T>();
-  const T sigma_N = y.sigma.dot(N);
-  const T F_N = y.F.dot(N);
-  T A1, A2_per_F;
-  if (coupling == Coupling::single) {
-    A1 = anisotropy.a0 * F_N;
-    A2_per_F = anisotropy.a0 / 3.0;
-  } else {
-    A2_per_F = anisotropy.a2 * m.B;
-    A1 = (2.0 / 3.0) * (A2_per_F * F_N - sigma_N);
-  }
-  const T S = 1.0 - sigma_N / (y.P * m.s_max);
+  const AnisotropyModuli<T> A = anisotropy_moduli(anisotropy, coupling, m.B, y, N);
+  const T S = 1.0 - y.sigma.dot(N) / (y.P * m.s_max);
   LawState<T> rate;
-  rate.P = m.B * direction.dx + A1 * S * direction.de;
+  rate.P = m.B * direction.dx + A.A1 * S * direction.de;
   rate.sigma =
-      y.F * (A2_per_F * direction.dx) + (N * (m.beta_s * m.s_max * y.P) - y.sigma * m.beta_s) * T(direction.de);
+      y.F * (A.A2_per_F * direction.dx) + (N * (m.beta_s * m.s_max * y.P) - y.sigma * m.beta_s) * T(direction.de);
   rate.F = (N * m.F_max - y.F) * (m.beta_F * direction.de);
   return rate;
 }

@@ -46,6 +46,11 @@ const std::array<ParameterInfo, kParameterCount>& parameter_table() {
       {"anisotropy.a0", "a_0", "19", "A* = a0 F_dev of the printed single coupling", 0, 10, 0.3, 0.137},
       {"anisotropy.a1", "a_1", "16", "A1/(B F_dev), pressure row", -10, 10, 0.7, none},
       {"anisotropy.a2", "a_2", "16", "A2/(B F_dev), deviatoric stress row", -10, 10, 1, none},
+      {"memory.G", "G", "memory", "elastic shear modulus 2G* = G (nu_P/nu_c - 1)^alpha: prefactor", 0.01, 10, 0.5, none},
+      {"memory.alpha", "alpha", "memory", "elastic shear modulus: exponent", 0.05, 2, 0.5, none},
+      {"memory.k", "k", "memory", "rate in shear at which P* goes to its sheared level", 0, 500, 20, none},
+      {"memory.lambda", "lambda", "memory", "rate in shear at which fabric follows stress", 1, 2000, 100, none},
+      {"memory.c_F", "c_F", "memory", "dilution of fabric by compression", 0, 100, 10, none},
   }};
   // clang-format on
   return table;

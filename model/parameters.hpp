@@ -25,6 +25,15 @@ struct Anisotropy {
   T a0{}, a1{}, a2{};
 };
 
+/// What the memory rung adds to Eq. (16), memory.hpp.
+template <class T>
+struct Memory {
+  T G{}, alpha{};  ///< DG = G (nu_P/nu_c - 1)^alpha [-]
+  T k{};           ///< rate of P towards its sheared level [-]
+  T lambda{};      ///< rate at which fabric follows stress [-]
+  T c_F{};         ///< dilution of fabric by compression [-]
+};
+
 template <class T>
 struct LawParameters {
   StateLaw<T> isotropic;               ///< ISO, unloading branch
@@ -37,9 +46,10 @@ struct LawParameters {
   ExponentialLaw<T> fabric_max;        ///< F_max(nu)
   ExponentialLaw<T> fabric_rate;       ///< beta_F(nu)
   Anisotropy<T> anisotropy;
+  Memory<T> memory;
 };
 
-inline constexpr std::size_t kParameterCount = 34;
+inline constexpr std::size_t kParameterCount = 39;
 
 /// The fields in the order of parameter_table(). `Law` is LawParameters<T> or const LawParameters<T>.
 template <class Law>
@@ -56,7 +66,8 @@ auto fields(Law& p) {
       &p.stress_rate.Q_limit, &p.stress_rate.Q_c, &p.stress_rate.alpha,
       &p.fabric_max.Q_limit, &p.fabric_max.Q_c, &p.fabric_max.alpha,
       &p.fabric_rate.Q_limit, &p.fabric_rate.Q_c, &p.fabric_rate.alpha,
-      &p.anisotropy.a0, &p.anisotropy.a1, &p.anisotropy.a2};
+      &p.anisotropy.a0, &p.anisotropy.a1, &p.anisotropy.a2,
+      &p.memory.G, &p.memory.alpha, &p.memory.k, &p.memory.lambda, &p.memory.c_F};
 }
 
 struct ParameterInfo {

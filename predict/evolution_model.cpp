@@ -1,9 +1,10 @@
-// Eq. (16) by CVODE, one initialisation for each straight segment: the jump of the direction at a corner is a boundary
-// of the integration, never inside a step. Unknowns: those of SegmentLaw; independent variable: path parameter e.
+// Eq. (16), with or without memory, by CVODE, one initialisation for each straight segment: the jump of the direction at a corner is a boundary
+// of the integration, never inside a step, and so is the jump of a reversal. Unknowns: those of SegmentLaw; independent variable: path parameter e.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "model/error.hpp"
@@ -28,9 +29,10 @@ constexpr double kHeldPressure = 1e-6;
 
 class PathIntegration {
  public:
-  PathIntegration(const LawParameters<double>& parameters, Coupling coupling, const LawState<double>& start,
+  PathIntegration(const LawParameters<double>& parameters, Rung rung, Coupling coupling, const LawState<double>& start,
                   const Tolerances& tolerances)
       : parameters_(parameters),
+        rung_(rung),
         coupling_(coupling),
         P_held_(kHeldPressure * start.P),
         P_floor_(kVanishedPressure * start.P),
@@ -41,12 +43,14 @@ class PathIntegration {
         state_(start) {}
 
   void enter(const StraightSegment& segment, std::size_t index) {
-    law_.emplace(parameters_, coupling_, segment, P_held_);
+    law_.emplace(parameters_, rung_, coupling_, segment, P_held_);
     index_ = index;
+    turn_corner(rung_, state_, law_->direction());
     at_corner_ = law_->unknowns_of(0, state_);
     e_ = 0;
     started_ = false;
-    jammed_until_ = jamming_point(segment, parameters_.isotropic.pressure.nu_c);
+    jammed_until_ = rung_ == Rung::memory ? std::numeric_limits<double>::infinity()
+                                          : jamming_point(segment, parameters_.isotropic.pressure.nu_c);
   }
 
   /// Moves on to path parameter `e` of the segment, or to where the state unjams before; false then.
@@ -85,6 +89,7 @@ class PathIntegration {
   }
 
   const LawParameters<double>& parameters_;
+  Rung rung_;
   Coupling coupling_;
   double P_held_, P_floor_;
   std::optional<SegmentLaw> law_;  // of the segment entered last
@@ -98,13 +103,13 @@ class PathIntegration {
 
 }  // namespace
 
-PathStates evolution_states(const LawParameters<double>& parameters, Coupling coupling,
-                            const std::vector<StraightSegment>& segments, const LawState<double>& start,
-                            const std::vector<OutputPoint>& points, const Tolerances& tolerances,
-                            const RunControl& control) {
+PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                             const std::vector<StraightSegment>& segments, const LawState<double>& start,
+                             const std::vector<OutputPoint>& points, const Tolerances& tolerances,
+                             const RunControl& control) {
   PathStates out;
   out.states.reserve(points.size());
-  PathIntegration integration(parameters, coupling, start, tolerances);
+  PathIntegration integration(parameters, rung, coupling, start, tolerances);
   std::size_t next = 0;
   for (std::size_t k = 0; k < segments.size() && next < points.size() && !out.unjammed; ++k) {
     integration.enter(segments[k], k);

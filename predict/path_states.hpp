@@ -1,5 +1,5 @@
 #pragma once
-// The two models as functions from a strain path to the states at the wanted points. What predict() wraps: it has
+// The rungs of the law as functions from a strain path to the states at the wanted points. What predict() wraps: it has
 // checked start and points before and derives the reported quantities after.
 
 #include <cmath>
@@ -28,10 +28,11 @@ PathStates reduced_states(const LawParameters<double>& parameters, const std::ve
                           const LawState<double>& start, const std::vector<OutputPoint>& points,
                           const RunControl& control);
 
-/// Eq. (16). Unjams where P falls to 1e-12 of its start or nu to the jamming density of Eq. (14).
-PathStates evolution_states(const LawParameters<double>& parameters, Coupling coupling,
-                            const std::vector<StraightSegment>& segments, const LawState<double>& start,
-                            const std::vector<OutputPoint>& points, const Tolerances& tolerances,
-                            const RunControl& control);
+/// Rung::evolution or Rung::memory. Unjams where P falls to 1e-12 of its start; evolution also where nu falls to the
+/// jamming density of Eq. (14), which memory may pass.
+PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                             const std::vector<StraightSegment>& segments, const LawState<double>& start,
+                             const std::vector<OutputPoint>& points, const Tolerances& tolerances,
+                             const RunControl& control);
 
 }  // namespace grainlaw::predict

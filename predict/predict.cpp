@@ -123,8 +123,6 @@ std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, cons
 
 }  // namespace
 
-std::string to_string(Model model) { return model == Model::reduced ? "reduced" : "evolution"; }
-
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {
   LawState<double> state{parameters.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
   check_start(parameters, nu, state);
@@ -142,7 +140,7 @@ LawState<double> state_from_row(const Observation& row) {
   return state;
 }
 
-Prediction predict(Model model, const LawParameters<double>& parameters, Coupling coupling,
+Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling coupling,
                    const std::vector<StraightSegment>& segments, const LawState<double>& start,
                    const std::vector<OutputPoint>& points, const Tolerances& tolerances, const ValidRange& range,
                    const RunControl& control) {
@@ -151,9 +149,9 @@ Prediction predict(Model model, const LawParameters<double>& parameters, Couplin
   check_start(parameters, segments.front().nu_start, start);
 
   const auto before = std::chrono::steady_clock::now();
-  const PathStates path = model == Model::reduced
-                              ? reduced_states(parameters, segments, start, points, control)
-                              : evolution_states(parameters, coupling, segments, start, points, tolerances, control);
+  const PathStates path = model == Rung::reduced ? reduced_states(parameters, segments, start, points, control)
+                                                 : integrated_states(parameters, model, coupling, segments, start,
+                                                                     points, tolerances, control);
 
   Prediction prediction;
   prediction.model = model;
@@ -171,7 +169,7 @@ Prediction predict(Model model, const LawParameters<double>& parameters, Couplin
       path_before += segments[k].eps_dev_rate() * segments[k].length;
     if (!is_finite(path.states[i]) || !(path.states[i].P > 0)) {
       throw Error(
-          fmt::format("segments[{}] at e = {:.9g}: the {} model gives a state that is not finite or P* <= 0; "
+          fmt::format("segments[{}] at e = {:.9g}: the {} law gives a state that is not finite or P* <= 0; "
                       "check the parameters",
                       k, points[i].e, to_string(model)));
     }

@@ -1,15 +1,15 @@
 #pragma once
 // The calibrated law along a strain path. Strain is the independent variable; the right-hand side is model's.
 //   reduced:   Eqs. (17), (18) in closed form at the current nu, P by Eq. (14) (Figs. 12, 14 of the paper)
-//   evolution: Eq. (16) by CVODE, stopped and re-initialised at each corner of the path; after every call y must be
-//              finite and t equal to the requested output
+//   evolution, memory: by CVODE, stopped and re-initialised at each corner of the path, where memory may reverse; after
+//              every call y must be finite and t equal to the requested output
 // Dimensionless (*) throughout; strain tension positive, stress and fabric compression positive. The deviators are the
 // 5-vectors of model/tensor.hpp.
 
 #include <string>
 #include <vector>
 
-#include "model/evolution.hpp"
+#include "model/law.hpp"
 #include "model/path.hpp"
 #include "model/run_control.hpp"
 #include "model/test_record.hpp"
@@ -17,8 +17,6 @@
 namespace grainlaw::predict {
 
 enum class Model { reduced, evolution };
-std::string to_string(Model model);
-
 enum class Method { adams, bdf };
 
 struct Tolerances {
@@ -59,7 +57,7 @@ struct SolverStatistics {
 };
 
 struct Prediction {
-  Model model = Model::evolution;
+  Rung model = Rung::evolution;
   std::vector<PredictedRow> rows;  ///< ends early when the state unjams
   SolverStatistics statistics;
   bool unjammed = false;    ///< P fell to zero (1e-12 of its start) or nu to pressure.nu_c; rows end before it
@@ -84,7 +82,7 @@ LawState<double> state_from_row(const Observation& row);
 /// reduced model. Throws InvalidInput for a start that is not jammed or points off the path; NotConverged with segment,
 /// strain and the solver's word when the solver fails, when y is not finite or t differs from the requested output;
 /// Interrupted.
-Prediction predict(Model model, const LawParameters<double>& parameters, Coupling coupling,
+Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling coupling,
                    const std::vector<StraightSegment>& segments, const LawState<double>& start,
                    const std::vector<OutputPoint>& points, const Tolerances& tolerances, const ValidRange& range,
                    const RunControl& control);

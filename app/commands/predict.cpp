@@ -16,12 +16,15 @@ namespace grainlaw::app {
 namespace {
 
 namespace fs = std::filesystem;
-using predict::Model;
 
 constexpr int kPointsPerSegment = 200;  // of a curve that no DEM run dictates
 
-std::vector<Model> models_of(const PredictOptions& options) {
-  return options.model ? std::vector{*options.model} : std::vector{Model::reduced, Model::evolution};
+/// The rung that is asked for, else reduced, evolution, and memory where it is calibrated.
+std::vector<Rung> rungs_of(const PredictOptions& options, const ParametersFile& parameters) {
+  if (options.model) return {*options.model};
+  std::vector<Rung> rungs{Rung::reduced, Rung::evolution};
+  if (fit::has_values(parameters.calibration, "memory")) rungs.push_back(Rung::memory);
+  return rungs;
 }
 
 std::vector<Initial> initials_of(const PredictOptions& options) {
@@ -32,11 +35,12 @@ std::vector<Initial> initials_of(const PredictOptions& options) {
 /// The law with everything that a curve needs besides its start and its points.
 struct Law {
   const fit::Calibration& calibration;
+  std::vector<Rung> rungs;
   std::vector<StraightSegment> segments;
   predict::ValidRange range;
   RunControl control;
 
-  predict::Prediction along(Model model, const LawState<double>& start,
+  predict::Prediction along(Rung model, const LawState<double>& start,
                             const std::vector<predict::OutputPoint>& points) const {
     return predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points,
                             predict::Tolerances{}, range, control);
@@ -44,11 +48,11 @@ struct Law {
 };
 
 /// Curves at equal steps, from the law's own start.
-void add_free_curves(const Law& law, const PredictOptions& options, PredictionFolder& content) {
+void add_free_curves(const Law& law, PredictionFolder& content) {
   const auto points = predict::uniform_points(law.segments, kPointsPerSegment);
   const auto start = predict::state_from_law(law.calibration.parameters, content.path.nu);
-  for (const Model model : models_of(options)) {
-    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", predict::to_string(model)),
+  for (const Rung model : law.rungs) {
+    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)),
                               law.along(model, start, points)});
   }
 }
@@ -58,13 +62,13 @@ void add_compared_curves(const Law& law, const PredictOptions& options, Predicti
   for (const DatasetTest& test : content.dem->tests) {
     const auto points = predict::points_of(test.record);
     const std::uint64_t seed = test.record.packing.seed;
-    for (const Model model : models_of(options)) {
+    for (const Rung model : law.rungs) {
       for (const Initial initial : initials_of(options)) {
         const auto start = initial == Initial::law
                                ? predict::state_from_law(law.calibration.parameters, content.path.nu)
                                : predict::state_from_row(test.record.rows.front());
         PredictedCurve curve{model, initial, seed,
-                             fmt::format("{}-{}-s{}.csv", predict::to_string(model), to_string(initial), seed),
+                             fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
                              law.along(model, start, points)};
         content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
         content.curves.push_back(std::move(curve));
@@ -101,7 +105,7 @@ OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) 
   OrderedJson& comparisons = summary["comparisons"] = OrderedJson::array();
   for (const CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
-    OrderedJson object{{"model", predict::to_string(entry.model)}, {"initial", to_string(entry.initial)}};
+    OrderedJson object{{"model", to_string(entry.model)}, {"initial", to_string(entry.initial)}};
     for (const auto& q : entry.comparison.quantities) {
       object[q.quantity] = {{"bias", number_or_null(q.bias)}, {"normalised_rms", number_or_null(q.normalised_rms)}};
     }
@@ -115,13 +119,13 @@ std::string text_of(const PredictionFolder& content, const fs::path& output) {
   for (const PredictedCurve& curve : content.curves) {
     if (curve.seed || curve.prediction.rows.empty()) continue;
     const predict::PredictedRow& end = curve.prediction.rows.back();
-    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n",
-                        predict::to_string(curve.model), to_string(curve.initial), end.nu, end.state.P, end.s_par,
-                        end.F_par, curve.prediction.unjammed ? "  (unjammed)" : "");
+    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n", to_string(curve.model),
+                        to_string(curve.initial), end.nu, end.state.P, end.s_par, end.F_par,
+                        curve.prediction.unjammed ? "  (unjammed)" : "");
   }
   for (const CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
-    text += fmt::format("{:<9} {:<8}", predict::to_string(entry.model), to_string(entry.initial));
+    text += fmt::format("{:<9} {:<8}", to_string(entry.model), to_string(entry.initial));
     for (const auto& q : entry.comparison.quantities)
       text += fmt::format("  {} bias {:+.4f} rms {:.1f} %", q.quantity, q.bias, 100 * q.normalised_rms);
     text += "\n";
@@ -136,10 +140,12 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
     throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem too");
   }
   const ParametersFile parameters = read_parameters(options.parameters);
-  for (const Model model : models_of(options)) require_parameters(parameters, model, options.parameters.string());
+  const std::vector<Rung> rungs = rungs_of(options, parameters);
+  for (const Rung model : rungs) require_parameters(parameters, model, options.parameters.string());
   const PathFile path = read_path(options.path);
   const fit::Calibration& calibration = parameters.calibration;
   const Law law{calibration,
+                rungs,
                 resolve(path.path),
                 {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max},
                 {{}, session.stop}};
@@ -159,7 +165,7 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
                         {"sha256", sha256_of_file(options.parameters)},
                         {"dataset_digest", parameters.dataset_digest}};
   if (options.dem) content.dem = run_dem(options, *spec, path, session);
-  if (options.initial != Initial::measured) add_free_curves(law, options, content);
+  if (options.initial != Initial::measured) add_free_curves(law, content);
   if (content.dem) add_compared_curves(law, options, content);
   content.provenance = Json(provenance(session.command, session.threads, session.stopwatch));
   write_prediction(options.output, content);

@@ -14,12 +14,12 @@
 namespace grainlaw::app {
 
 struct PredictOptions {
-  std::filesystem::path parameters;     ///< parameters.json of a calibration
-  std::filesystem::path path;           ///< PATH.json
-  std::filesystem::path output;         ///< folder of the prediction
-  std::optional<predict::Model> model;  ///< none: both
-  std::optional<Initial> initial;       ///< none: law, and measured too with `dem`
-  bool dem = false;                     ///< run the path in the engine too
+  std::filesystem::path parameters;  ///< parameters.json of a calibration
+  std::filesystem::path path;        ///< PATH.json
+  std::filesystem::path output;      ///< folder of the prediction
+  std::optional<Rung> model;         ///< none: reduced, evolution, and memory where it is calibrated
+  std::optional<Initial> initial;    ///< none: law, and measured too with `dem`
+  bool dem = false;                  ///< run the path in the engine too
   std::vector<std::uint64_t>
       seeds;                    ///< of the new packings; empty: PATH's, else as many as calibrated, following those
   std::filesystem::path spec;   ///< SPEC of the packings; empty: spec.resolved.json beside `parameters`

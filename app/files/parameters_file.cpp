@@ -45,9 +45,9 @@ void read_covariance(const Json& object, Eigen::MatrixXd& covariance) {
 
 /// True for the alpha of an Eq. (20) whose Q_c is zero: the law does not depend on it.
 bool without_exponential(const ParametersFile& parameters, std::size_t alpha) {
-  const std::string name = parameter_table()[alpha].name;
-  const std::string group = name.substr(0, name.find('.'));
-  if (group == "coordination") return false;
+  const ParameterInfo& info = parameter_table()[alpha];
+  const std::string name = info.name, group = name.substr(0, name.find('.'));
+  if (info.equation != std::string("20")) return false;
   const std::size_t Q_c = parameter_index(group + ".Q_c");
   return parameters.calibration.estimates[Q_c].status != fit::Status::not_identified &&
          *fields(parameters.calibration.parameters)[Q_c] == 0;
@@ -127,13 +127,17 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   return result;
 }
 
-void require_parameters(const ParametersFile& parameters, predict::Model model, const std::string& name) {
+void require_parameters(const ParametersFile& parameters, Rung model, const std::string& name) {
   std::vector<std::string> needed;
   for (const char* group : {"coordination", "rattlers", "pressure", "shear.nu_c", "stress_ratio_max", "stress_rate",
                             "fabric_max", "fabric_rate"}) {
     needed.emplace_back(group);
   }
-  if (model == predict::Model::evolution) {
+  if (model == Rung::memory) {
+    for (const char* group : {"steady_coordination", "steady_rattlers", "steady_pressure", "memory"})
+      needed.emplace_back(group);
+  }
+  if (model != Rung::reduced) {
     needed.emplace_back(parameters.calibration.coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2");
   }
   for (std::size_t i = 0; i < kParameterCount; ++i) {

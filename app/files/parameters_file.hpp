@@ -22,6 +22,6 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
 ParametersFile read_parameters(const std::filesystem::path& file);
 
 /// Throws InvalidInput when `model` needs a parameter that has no value, naming it and what would identify it.
-void require_parameters(const ParametersFile& parameters, predict::Model model, const std::string& name);
+void require_parameters(const ParametersFile& parameters, Rung model, const std::string& name);
 
 }  // namespace grainlaw::app

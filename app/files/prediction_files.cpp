@@ -14,18 +14,18 @@ namespace grainlaw::app {
 namespace {
 
 namespace fs = std::filesystem;
-using predict::Model;
+
 using predict::QuantityComparison;
 
-OrderedJson head(Model model, Initial initial, const std::optional<std::uint64_t>& seed) {
-  return {{"model", predict::to_string(model)},
+OrderedJson head(Rung model, Initial initial, const std::optional<std::uint64_t>& seed) {
+  return {{"model", to_string(model)},
           {"initial", to_string(initial)},
           {"seed", seed ? OrderedJson(*seed) : OrderedJson(nullptr)}};
 }
 
 template <class Entry>
 void read_head(const Json& object, Entry& entry) {
-  entry.model = object.at("model") == predict::to_string(Model::reduced) ? Model::reduced : Model::evolution;
+  entry.model = rung_of(object.at("model").get<std::string>());
   entry.initial = object.at("initial") == to_string(Initial::measured) ? Initial::measured : Initial::law;
   if (!object.at("seed").is_null()) entry.seed = object.at("seed").get<std::uint64_t>();
 }
@@ -106,7 +106,7 @@ std::string to_string(Initial initial) { return initial == Initial::law ? "law" 
 
 std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>& comparisons) {
   std::vector<CurveComparison> means;
-  for (const Model model : {Model::reduced, Model::evolution}) {
+  for (const Rung model : kRungs) {
     for (const Initial initial : {Initial::law, Initial::measured}) {
       CurveComparison mean{model, initial, std::nullopt, {"mean", {}}};
       double seeds = 0;

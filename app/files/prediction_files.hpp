@@ -19,7 +19,7 @@ std::string to_string(Initial initial);
 
 /// The law along the path.
 struct PredictedCurve {
-  predict::Model model = predict::Model::evolution;
+  Rung model = Rung::evolution;
   Initial initial = Initial::law;
   std::optional<std::uint64_t> seed;  ///< of the DEM run at whose rows the curve was computed; none: equal steps
   std::string file;                   ///< CSV in the prediction's folder
@@ -28,7 +28,7 @@ struct PredictedCurve {
 
 /// One curve against one DEM run, or the mean over runs.
 struct CurveComparison {
-  predict::Model model = predict::Model::evolution;
+  Rung model = Rung::evolution;
   Initial initial = Initial::law;
   std::optional<std::uint64_t> seed;  ///< none: mean over seeds (largest: of the seed where it is largest)
   predict::Comparison comparison;     ///< test "mean" when none

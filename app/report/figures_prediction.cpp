@@ -62,11 +62,12 @@ std::vector<const PredictedCurve*> shown_curves(const PredictionFolder& predicti
 }
 
 Series law_series(const PredictedCurve& drawn) {
-  const bool reduced = drawn.model == predict::Model::reduced, measured = drawn.initial == Initial::measured;
+  const bool measured = drawn.initial == Initial::measured;
   Series series;
-  series.label =
-      plain(predict::to_string(drawn.model) + (measured ? ", from measured start" : ", from the law's start"));
-  series.colour = reduced ? Colour::green : Colour::vermillion;
+  series.label = plain(to_string(drawn.model) + (measured ? ", from measured start" : ", from the law's start"));
+  series.colour = drawn.model == Rung::reduced     ? Colour::green
+                  : drawn.model == Rung::evolution ? Colour::vermillion
+                                                   : Colour::blue;
   series.line = measured ? Line::dotted : Line::solid;
   return series;
 }

@@ -49,7 +49,7 @@ std::vector<fs::path> prediction_folders(const fs::path& dir) {
 void check_predictions(const ParametersFile& parameters, const fs::path& dir, const std::string& command,
                        ReportInput& input) {
   try {
-    require_parameters(parameters, predict::Model::reduced, "parameters.json");
+    require_parameters(parameters, Rung::reduced, "parameters.json");
   } catch (const InvalidInput& error) {
     input.warnings.push_back(std::string("No prediction can be made: ") + error.what());
     return;

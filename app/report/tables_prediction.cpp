@@ -21,8 +21,7 @@ Table prediction_summary(const std::vector<PredictionFolder>& predictions) {
   for (const PredictionFolder& prediction : predictions) {
     for (const CurveComparison& entry : prediction.comparisons) {
       if (entry.seed) continue;
-      std::vector<Text> row{plain(prediction.name), plain(predict::to_string(entry.model)),
-                            plain(to_string(entry.initial))};
+      std::vector<Text> row{plain(prediction.name), plain(to_string(entry.model)), plain(to_string(entry.initial))};
       for (const char* name : {"P_star", "s_par", "F_par"}) {
         const auto& all = entry.comparison.quantities;
         const auto found = std::find_if(all.begin(), all.end(), [&](const auto& q) { return q.quantity == name; });
@@ -47,7 +46,7 @@ Table prediction_table(const PredictionFolder& prediction) {
                    quantity(notation("at {ν}"))};
   for (const CurveComparison& entry : prediction.comparisons) {
     for (const predict::QuantityComparison& q : entry.comparison.quantities) {
-      table.rows.push_back({plain(predict::to_string(entry.model)), plain(to_string(entry.initial)),
+      table.rows.push_back({plain(to_string(entry.model)), plain(to_string(entry.initial)),
                             plain(entry.seed ? std::to_string(*entry.seed) : "mean"), plain(q.quantity),
                             plain(std::to_string(q.rows)), number(q.bias, 3), number(q.rms, 3),
                             plain(fixed(100 * q.normalised_rms, 2)), number(q.largest, 3),
@@ -74,8 +73,7 @@ Table solver_table(const std::vector<PredictionFolder>& predictions) {
   for (const PredictionFolder& prediction : predictions) {
     for (const PredictedCurve& drawn : prediction.curves) {
       const predict::SolverStatistics& s = drawn.prediction.statistics;
-      table.rows.push_back({plain(prediction.name), plain(predict::to_string(drawn.model)),
-                            plain(to_string(drawn.initial)),
+      table.rows.push_back({plain(prediction.name), plain(to_string(drawn.model)), plain(to_string(drawn.initial)),
                             plain(drawn.seed ? std::to_string(*drawn.seed) : kNoNumber),
                             plain(std::to_string(drawn.prediction.rows.size())), plain(std::to_string(s.steps)),
                             plain(std::to_string(s.rhs_evaluations)), plain(std::to_string(s.error_test_failures)),

@@ -95,10 +95,10 @@ inline fit::ShearFit shear_fit_of(const TestRecord& test, const LawParameters<do
   return shear;
 }
 
-inline predict::Prediction predicted_at(const TestRecord& test, const LawParameters<double>& p, predict::Model model) {
+inline predict::Prediction predicted_at(const TestRecord& test, const LawParameters<double>& p, Rung model) {
   predict::Prediction prediction;
   prediction.model = model;
-  const double factor = model == predict::Model::reduced ? 1.0 : 0.95;
+  const double factor = model == Rung::reduced ? 1.0 : 0.95;
   for (const Observation& observed : test.rows) {
     predict::PredictedRow row;
     row.strain = observed.strain;
@@ -125,8 +125,8 @@ inline app::PredictionFolder make_prediction(const std::string& name, double nu,
     TestRecord test =
         make_test("UNI-seed" + std::to_string(seed), seed, nu, {segment_of(Mode::UNI, ExtentKind::target_nu, 0.82)});
     fill_rows(test, p, 150, generator);
-    for (const predict::Model model : {predict::Model::reduced, predict::Model::evolution}) {
-      const std::string file = predict::to_string(model) + "-law-seed" + std::to_string(seed) + ".csv";
+    for (const Rung model : {Rung::reduced, Rung::evolution}) {
+      const std::string file = to_string(model) + "-law-seed" + std::to_string(seed) + ".csv";
       folder.curves.push_back({model, app::Initial::law, seed, file, predicted_at(test, p, model)});
       predict::Comparison comparison{test.name, {}};
       for (const char* quantity : {"P_star", "s_par", "F_par"}) {

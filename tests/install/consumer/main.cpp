@@ -23,9 +23,10 @@ dem::State small_packing(double nu, const dem::DriveOptions& drive) {
   options.keep_unloading = {nu};
   options.rows = 10;
   dem::State kept;
-  dem::prepare(options, {[&](const dem::KeptState& state) { kept = state.state; },
-                         [](Branch, const std::vector<Observation>&) {}, {}},
-               {});
+  dem::prepare(
+      options,
+      {[&](const dem::KeptState& state) { kept = state.state; }, [](Branch, const std::vector<Observation>&) {}, {}},
+      {});
   return kept;
 }
 
@@ -51,8 +52,8 @@ void predict_uniaxial() {
   parameters.anisotropy.a2 = 1;
   const auto path = one_segment(0.70, Mode::UNI, 0.05);
   const predict::Prediction prediction =
-      predict::predict(predict::Model::evolution, parameters, Coupling::energy, path,
-                       predict::state_from_law(parameters, 0.70), predict::uniform_points(path, 10), {}, {}, {});
+      predict::predict(Rung::evolution, parameters, Coupling::energy, path, predict::state_from_law(parameters, 0.70),
+                       predict::uniform_points(path, 10), {}, {}, {});
   const predict::PredictedRow &first = prediction.rows.front(), &last = prediction.rows.back();
   std::printf("law.rows %zu\n", prediction.rows.size());
   std::printf("law.nu_ratio_log %.12g\n", std::log(last.nu / first.nu));

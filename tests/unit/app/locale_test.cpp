@@ -74,7 +74,7 @@ std::vector<TestRecord> records() {
 predict::Prediction predicted(const fit::Calibration& calibration) {
   const Path path{0.7, Branch::unloading, {{Mode::UNI, direction_of(Mode::UNI), ExtentKind::target_nu, 0.8}}};
   const auto segments = resolve(path);
-  return predict::predict(predict::Model::evolution, calibration.parameters, calibration.coupling, segments,
+  return predict::predict(Rung::evolution, calibration.parameters, calibration.coupling, segments,
                           predict::state_from_law(calibration.parameters, path.nu),
                           predict::uniform_points(segments, 50), {}, {}, {});
 }

@@ -9,8 +9,8 @@
 #include "app/files/parameters_file.hpp"
 #include "app/files/prediction_files.hpp"
 #include "app/files/series_csv.hpp"
-#include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {
@@ -247,20 +247,20 @@ TEST_F(ResultFiles, DoubtfulParametersAreRefused) {
   EXPECT_NE(message([](Json& j) { j.erase("coupling"); }).find("misses the key 'coupling'"), std::string::npos);
 
   const ParametersFile read = read_parameters(folder_ / "p.json");
-  EXPECT_EQ(refusal([&] { require_parameters(read, predict::Model::evolution, "p.json"); }),
+  EXPECT_EQ(refusal([&] { require_parameters(read, Rung::evolution, "p.json"); }),
             "accepted");  // single coupling reads a0
   ParametersFile energy = read;
   energy.calibration.coupling = Coupling::energy;
   EXPECT_NE(refusal([&] {
-              require_parameters(energy, predict::Model::evolution, "p.json");
+              require_parameters(energy, Rung::evolution, "p.json");
             }).find("p.json: parameters.anisotropy.a2: is not identified"),
             std::string::npos);
-  EXPECT_EQ(refusal([&] { require_parameters(energy, predict::Model::reduced, "p.json"); }), "accepted");
+  EXPECT_EQ(refusal([&] { require_parameters(energy, Rung::reduced, "p.json"); }), "accepted");
   energy.calibration.estimates[parameter_index("stress_rate.alpha")].status = fit::Status::not_identified;
-  EXPECT_NE(refusal([&] { require_parameters(energy, predict::Model::reduced, "p.json"); }).find("stress_rate.alpha"),
+  EXPECT_NE(refusal([&] { require_parameters(energy, Rung::reduced, "p.json"); }).find("stress_rate.alpha"),
             std::string::npos);
   energy.calibration.parameters.stress_rate.Q_c = 0;  // the exponential is gone, and its decay with it
-  EXPECT_EQ(refusal([&] { require_parameters(energy, predict::Model::reduced, "p.json"); }), "accepted");
+  EXPECT_EQ(refusal([&] { require_parameters(energy, Rung::reduced, "p.json"); }), "accepted");
 }
 
 TEST_F(ResultFiles, CalibrationIsReadBack) {
@@ -294,8 +294,7 @@ PredictionFolder small_prediction(const std::filesystem::path& folder) {
   const auto segments = resolve(test.path);
   const auto law = testing::synthetic_truth();
   for (const std::uint64_t seed : {3u, 4u}) {
-    PredictedCurve curve{
-        predict::Model::evolution, Initial::measured, seed, fmt::format("evolution-measured-s{}.csv", seed), {}};
+    PredictedCurve curve{Rung::evolution, Initial::measured, seed, fmt::format("evolution-measured-s{}.csv", seed), {}};
     curve.prediction =
         predict::predict(curve.model, law, Coupling::energy, segments, predict::state_from_law(law, test.path.nu),
                          predict::points_of(test), {}, {}, {});

@@ -151,8 +151,8 @@ TEST_F(SeriesCsv, RefusesEmptyFieldsWhereANumberIsNeeded) {
 TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
   const auto segments = resolve(record_.path);
   const auto start = predict::state_from_law(testing::synthetic_truth(), record_.path.nu);
-  const auto prediction = predict::predict(predict::Model::evolution, testing::synthetic_truth(), Coupling::energy,
-                                           segments, start, predict::uniform_points(segments, 10), {}, {}, {});
+  const auto prediction = predict::predict(Rung::evolution, testing::synthetic_truth(), Coupling::energy, segments,
+                                           start, predict::uniform_points(segments, 10), {}, {}, {});
   write_prediction_series(folder_ / "p.csv", prediction.rows);
   const auto rows = read_prediction_series(folder_ / "p.csv");
   ASSERT_EQ(rows.size(), prediction.rows.size());

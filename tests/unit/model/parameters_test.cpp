@@ -93,7 +93,12 @@ TEST(Parameters, EachNameIsTheFieldThatItSays) {
                                                       {"fabric_rate.alpha", &p.fabric_rate.alpha},
                                                       {"anisotropy.a0", &p.anisotropy.a0},
                                                       {"anisotropy.a1", &p.anisotropy.a1},
-                                                      {"anisotropy.a2", &p.anisotropy.a2}};
+                                                      {"anisotropy.a2", &p.anisotropy.a2},
+                                                      {"memory.G", &p.memory.G},
+                                                      {"memory.alpha", &p.memory.alpha},
+                                                      {"memory.k", &p.memory.k},
+                                                      {"memory.lambda", &p.memory.lambda},
+                                                      {"memory.c_F", &p.memory.c_F}};
   ASSERT_EQ(expected.size(), kParameterCount);
   const auto field = fields(p);
   for (std::size_t i = 0; i < kParameterCount; ++i) {

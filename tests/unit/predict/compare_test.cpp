@@ -27,7 +27,7 @@ Scene scene(const std::vector<PathSegment>& path, const std::vector<OutputPoint>
   s.test.path = {0.74, Branch::unloading, path};
   const LawParameters<double> p = published_parameters();
   s.prediction =
-      predict(Model::reduced, p, Coupling::single, resolve(s.test.path), state_from_law(p, 0.74), points, {}, {}, {});
+      predict(Rung::reduced, p, Coupling::single, resolve(s.test.path), state_from_law(p, 0.74), points, {}, {}, {});
   for (const PredictedRow& row : s.prediction.rows) {
     Observation o;
     o.strain = row.strain;

@@ -76,7 +76,7 @@ TEST(PointsOf, RoundingStaysOnThePath) {
   }
   const auto segments = resolve(test.path);
   const auto points = points_of(test);
-  EXPECT_NO_THROW(predict(Model::reduced, published_parameters(), Coupling::single, segments,
+  EXPECT_NO_THROW(predict(Rung::reduced, published_parameters(), Coupling::single, segments,
                           state_from_law(published_parameters(), 0.70), points, {}, {}, {}))
       << "whatever rounding did, the points lie in their segments";
 }

@@ -18,7 +18,7 @@ using testing::path_from;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Model kModels[] = {Model::reduced, Model::evolution};
+constexpr Model kModels[] = {Rung::reduced, Rung::evolution};
 
 LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();
@@ -26,7 +26,7 @@ LawParameters<double> parameters() {
   return p;
 }
 
-Prediction run(Model model, const std::vector<StraightSegment>& path, const std::vector<OutputPoint>& points,
+Prediction run(Rung model, const std::vector<StraightSegment>& path, const std::vector<OutputPoint>& points,
                const ValidRange& range = {}, const Tolerances& tolerances = {}) {
   const LawParameters<double> p = parameters();
   return predict(model, p, Coupling::energy, path, state_from_law(p, path.front().nu_start), points, tolerances, range,
@@ -79,7 +79,7 @@ TEST(Predict, O10StartIsReturnedExactly) {
   start.F << 0.01, 0, 0.02, 0, 0;
   for (const std::vector<OutputPoint>& points :
        {std::vector<OutputPoint>{{0, 0}}, {{0, 0}, {0, 0}}, {{0, 0}, {0, 0.05}}}) {
-    const auto rows = predict(Model::evolution, p, Coupling::energy, path, start, points, {}, {}, {}).rows;
+    const auto rows = predict(Rung::evolution, p, Coupling::energy, path, start, points, {}, {}, {}).rows;
     ASSERT_EQ(rows.size(), points.size());
     EXPECT_TRUE(equal(rows[0].state, start));
     EXPECT_TRUE(rows[0].strain.tensor.isZero());
@@ -88,7 +88,7 @@ TEST(Predict, O10StartIsReturnedExactly) {
 }
 
 TEST(Predict, O10NoPointsGiveNoRows) {
-  for (const Model model : kModels) {
+  for (const Rung model : kModels) {
     const Prediction prediction = run(model, path_from(0.70, {leg(Mode::UNI, 0.1)}), {});
     EXPECT_TRUE(prediction.rows.empty());
     EXPECT_FALSE(prediction.unjammed);
@@ -98,7 +98,7 @@ TEST(Predict, O10NoPointsGiveNoRows) {
 TEST(Predict, O10RepeatedPointsGiveEqualRows) {
   const auto path = path_from(0.70, {leg(Mode::UNI, 0.1), leg(Mode::D2, 0.1)});
   const double end = path[0].length;
-  for (const Model model : kModels) {
+  for (const Rung model : kModels) {
     const auto rows =
         run(model, path, {{0, 0.03}, {0, 0.03}, {0, 0.03}, {0, end}, {0, end}, {1, 0}, {1, 0}, {1, 0.05}}).rows;
     ASSERT_EQ(rows.size(), 8U);
@@ -115,7 +115,7 @@ TEST(Predict, O10PointsOffThePathAreRefused) {
   const std::vector<std::vector<OutputPoint>> bad = {
       {{0, kNaN}},           {{0, -1e-12}},         {{0, 0.2}}, {{0, kInfinity}}, {{2, 0}}, {{-1, 0}},
       {{1, 0.01}, {0, 0.1}}, {{0, 0.05}, {0, 0.04}}};
-  for (const Model model : kModels) {
+  for (const Rung model : kModels) {
     for (const auto& points : bad) EXPECT_THROW(run(model, path, points), InvalidInput);
   }
 }
@@ -126,7 +126,7 @@ TEST(Predict, RefusesWhatCannotBeIntegrated) {
   const LawState<double> good = state_from_law(p, 0.70);
   const auto attempt = [&](const std::vector<StraightSegment>& segments, const LawState<double>& start,
                            const Tolerances& t) {
-    predict(Model::evolution, p, Coupling::energy, segments, start, {{0, 0.0}}, t, {}, {});
+    predict(Rung::evolution, p, Coupling::energy, segments, start, {{0, 0.0}}, t, {}, {});
   };
   EXPECT_NO_THROW(attempt(path, good, {}));
   EXPECT_THROW(attempt({}, good, {}), InvalidInput);
@@ -154,7 +154,7 @@ TEST(Predict, ParametersThatAreNoNumbersGiveNoRows) {
   LawParameters<double> p = parameters();
   const LawState<double> start = state_from_law(p, 0.70);
   p.stress_rate.Q_c = kNaN;
-  for (const Model model : kModels) {
+  for (const Rung model : kModels) {
     EXPECT_THROW(predict(model, p, Coupling::energy, path, start, {{0, 0.05}}, {}, {}, {}), Error);
   }
 }
@@ -163,7 +163,7 @@ TEST(Predict, FailureNamesSegmentStrainAndReason) {
   const LawParameters<double> p = parameters();
   const auto path = path_from(0.70, {leg(Mode::ISO, 0.01), leg(Mode::UNI, 0.1)});
   try {
-    predict(Model::evolution, p, Coupling::energy, path, state_from_law(p, 0.70), {{1, 0.1}},
+    predict(Rung::evolution, p, Coupling::energy, path, state_from_law(p, 0.70), {{1, 0.1}},
             {1e-8, 1e-12, Method::adams, 20}, {}, {});
     FAIL() << "20 steps cannot be enough";
   } catch (const NotConverged& error) {
@@ -182,7 +182,7 @@ TEST(Predict, StopsWhenAsked) {
   source.request_stop();
   RunControl control;
   control.stop = source.get_token();
-  for (const Model model : kModels) {
+  for (const Rung model : kModels) {
     EXPECT_THROW(predict(model, p, Coupling::energy, path, state_from_law(p, 0.70), {{0, 0.05}}, {}, {}, control),
                  Interrupted);
   }
@@ -190,7 +190,7 @@ TEST(Predict, StopsWhenAsked) {
 
 TEST(Predict, RowsCarryTheGeometryOfThePath) {
   const auto path = path_from(0.70, {leg(Mode::D2, 0.10), leg(Mode::D2, 0.04, true), leg_to(Mode::ISO, 0.72)});
-  for (const Model model : kModels) {
+  for (const Rung model : kModels) {
     const auto rows = run(model, path, uniform_points(path, 2)).rows;
     ASSERT_EQ(rows.size(), 9U);
     const double eps_dev[] = {0, .05, .10, .10, .08, .06, .06, .06, .06},
@@ -212,8 +212,8 @@ TEST(Predict, RowsCarryTheGeometryOfThePath) {
 
 TEST(Predict, O11WorkDoesNotGrowWithTheNumberOfOutputs) {
   const auto path = path_from(0.695, {leg_to(Mode::UNI, 0.82)});
-  const auto few = run(Model::evolution, path, uniform_points(path, 100));
-  const auto many = run(Model::evolution, path, uniform_points(path, 100000));
+  const auto few = run(Rung::evolution, path, uniform_points(path, 100));
+  const auto many = run(Rung::evolution, path, uniform_points(path, 100000));
   ASSERT_EQ(many.rows.size(), 100001U);
   EXPECT_LE(many.statistics.rhs_evaluations, 3 * few.statistics.rhs_evaluations);
   EXPECT_NEAR(many.rows.back().state.P, few.rows.back().state.P, 1e-8);
@@ -226,7 +226,7 @@ TEST(Predict, O11LargeStrainSaturates) {
   const LawParameters<double> p = parameters();
   const auto path = path_from(0.74, {leg(Mode::D2, 10)});
   const auto row =
-      predict(Model::evolution, p, Coupling::single, path, state_from_law(p, 0.74), {{0, path[0].length}}, {}, {}, {})
+      predict(Rung::evolution, p, Coupling::single, path, state_from_law(p, 0.74), {{0, path[0].length}}, {}, {}, {})
           .rows.at(0);
   EXPECT_NEAR(row.s_par, p.stress_ratio_max.value(0.74, p.shear_nu_c), 1e-8);
   EXPECT_NEAR(row.F_par, p.fabric_max.value(0.74, p.shear_nu_c), 1e-8);
@@ -237,7 +237,7 @@ TEST(Predict, StateDoesNotDependOnWhereOutputsAre) {
   const OutputPoint end{1, path[1].length};
   const auto last = [&](std::vector<OutputPoint> points) {
     points.push_back(end);
-    return run(Model::evolution, path, points).rows.back().state;
+    return run(Rung::evolution, path, points).rows.back().state;
   };
   const LawState<double> a = last({}), b = last(uniform_points(path, 37)),
                          c = last({{0, 1e-300}, {0, 1e-15}, {0, 1e-9}, {1, 1e-20}});
@@ -251,7 +251,7 @@ TEST(Predict, StateDoesNotDependOnWhereOutputsAre) {
 TEST(Predict, WarnsOncePerKindOutsideTheCalibratedRange) {
   const ValidRange range{0.70, 0.80, 0.15};
   const auto up = path_from(0.72, {leg(Mode::D2, 0.3), leg_to(Mode::ISO, 0.82), leg_to(Mode::ISO, 0.68, true)});
-  for (const Model model : kModels) {
+  for (const Rung model : kModels) {
     const auto warnings = run(model, up, uniform_points(up, 50), range).warnings;
     ASSERT_EQ(warnings.size(), 3U);
     EXPECT_EQ(warnings[0], "nu = 0.68 lies outside the calibrated range 0.7-0.8");
@@ -259,7 +259,7 @@ TEST(Predict, WarnsOncePerKindOutsideTheCalibratedRange) {
     EXPECT_EQ(warnings[2], "eps_dev = 0.3 lies beyond the calibrated strain 0.15");
   }
   const auto inside = path_from(0.70, {leg_to(Mode::UNI, 0.80)});
-  EXPECT_TRUE(run(Model::evolution, inside, uniform_points(inside, 10), range).warnings.empty())
+  EXPECT_TRUE(run(Rung::evolution, inside, uniform_points(inside, 10), range).warnings.empty())
       << "the limits belong to it";
 }
 
@@ -269,15 +269,14 @@ TEST(Reduced, PressureIsThatOfTheDensity) {
   LawState<double> start = state_from_law(p, 0.70);
   start.P *= 1.3;
   start.sigma = shear_direction(path) * (0.02 * start.P);
-  const auto rows =
-      predict(Model::reduced, p, Coupling::energy, path, start, uniform_points(path, 10), {}, {}, {}).rows;
+  const auto rows = predict(Rung::reduced, p, Coupling::energy, path, start, uniform_points(path, 10), {}, {}, {}).rows;
   for (const auto& row : rows) EXPECT_EQ(row.state.P, p.isotropic.P_star(row.nu));
   EXPECT_NEAR(rows[0].s_par, 0.02, 1e-16) << "the measured ratio, not the measured stress, is the start";
 }
 
 TEST(Reduced, IsotropicSegmentsKeepTheRatios) {
   const auto path = path_from(0.70, {leg(Mode::D2, 0.05), leg_to(Mode::ISO, 0.75), leg_to(Mode::ISO, 0.72, true)});
-  const auto rows = run(Model::reduced, path, uniform_points(path, 5)).rows;
+  const auto rows = run(Rung::reduced, path, uniform_points(path, 5)).rows;
   for (std::size_t i = 6; i < rows.size(); ++i) {
     EXPECT_NEAR(rows[i].s_par, rows[5].s_par, 1e-15);
     EXPECT_NEAR(rows[i].F_par, rows[5].F_par, 1e-15);
@@ -291,7 +290,7 @@ TEST(Reduced, OffAxisPartsDecay) {
   second.direction = StrainRate{};
   second.direction.tensor(0, 1) = second.direction.tensor(1, 0) = -0.5;  // orthogonal to any diagonal direction
   const auto path = path_from(0.70, {leg(Mode::D2, 0.05), second});
-  const auto rows = run(Model::reduced, path, uniform_points(path, 4)).rows;
+  const auto rows = run(Rung::reduced, path, uniform_points(path, 4)).rows;
   const double beta_s = p.stress_rate.value(0.70, p.shear_nu_c), beta_F = p.fabric_rate.value(0.70, p.shear_nu_c);
   for (std::size_t i = 5; i < rows.size(); ++i) {
     const double e = rows[i].shear_path - 0.05;
@@ -304,7 +303,7 @@ TEST(Reduced, OffAxisPartsDecay) {
 TEST(Reduced, EndsAtJamming) {
   const LawParameters<double> p = parameters();
   const auto path = path_from(0.70, {leg_to(Mode::UNI, 0.60, true)});
-  const Prediction prediction = run(Model::reduced, path, uniform_points(path, 100));
+  const Prediction prediction = run(Rung::reduced, path, uniform_points(path, 100));
   EXPECT_TRUE(prediction.unjammed);
   EXPECT_NEAR(prediction.unjammed_at.e, std::log(0.70 / p.isotropic.pressure.nu_c), 1e-15);
   EXPECT_GT(prediction.rows.back().nu, p.isotropic.pressure.nu_c);
@@ -312,8 +311,8 @@ TEST(Reduced, EndsAtJamming) {
 }
 
 TEST(Predict, NamesOfModels) {
-  EXPECT_EQ(to_string(Model::reduced), "reduced");
-  EXPECT_EQ(to_string(Model::evolution), "evolution");
+  EXPECT_EQ(to_string(Rung::reduced), "reduced");
+  EXPECT_EQ(to_string(Rung::evolution), "evolution");
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ predict::Tolerances tolerances(double relative, Method method) {
 
 Prediction integrate(const std::vector<StraightSegment>& path, const LawState<double>& start,
                      const std::vector<OutputPoint>& points, const predict::Tolerances& t) {
-  return predict::predict(predict::Model::evolution, uncoupled(), Coupling::single, path, start, points, t, {}, {});
+  return predict::predict(Rung::evolution, uncoupled(), Coupling::single, path, start, points, t, {}, {});
 }
 
 /// Signed s or F along a zigzag of D2: the closed form of each piece, started from the end of the one before.
@@ -73,7 +73,7 @@ struct Outcome {
 /// Largest deviation of s from its closed form over s_max, of F over F_max and of P over P_0; starts from s_0, F_0 (in
 /// these units).
 Outcome run_against_closed_form(const std::vector<StraightSegment>& path, int outputs, const predict::Tolerances& t,
-                     double s_0 = 0, double F_0 = 0) {
+                                double s_0 = 0, double F_0 = 0) {
   const LawParameters<double> p = uncoupled();
   const double nu = path.front().nu_start;
   const double s_max = p.stress_ratio_max.value(nu, p.shear_nu_c), F_max = p.fabric_max.value(nu, p.shear_nu_c);
@@ -192,9 +192,9 @@ TEST(ClosedForm, ReducedModelIsTheClosedFormOfEachPiece) {
   const double s_max = p.stress_ratio_max.value(0.70, p.shear_nu_c);
   const Zigzag s(path, s_max, p.stress_rate.value(0.70, p.shear_nu_c), 0);
   const auto points = predict::uniform_points(path, 7);
-  const auto rows = predict::predict(predict::Model::reduced, p, Coupling::single, path,
-                                     predict::state_from_law(p, 0.70), points, {}, {}, {})
-                        .rows;
+  const auto rows =
+      predict::predict(Rung::reduced, p, Coupling::single, path, predict::state_from_law(p, 0.70), points, {}, {}, {})
+          .rows;
   ASSERT_EQ(rows.size(), points.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_NEAR(rows[i].s_par, s.at(points[i].segment, points[i].e), 1e-15) << i;

@@ -18,7 +18,7 @@ namespace grainlaw {
 namespace {
 
 using predict::Method;
-using predict::Model;
+
 using testing::figure;
 using testing::leg;
 using testing::path_from;
@@ -33,7 +33,7 @@ TEST(Coupling, ConstantAnisotropyHasAFirstIntegral) {
     LawState<double> start = predict::state_from_law(p, nu);
     start.F = shear_direction(path) * F_max;
     for (const Method method : {Method::adams, Method::bdf}) {
-      const auto rows = predict::predict(Model::evolution, p, Coupling::single, path, start,
+      const auto rows = predict::predict(Rung::evolution, p, Coupling::single, path, start,
                                          predict::uniform_points(path, 30), {1e-11, 1e-15, method}, {}, {})
                             .rows;
       ASSERT_EQ(rows.size(), 31U);
@@ -71,7 +71,7 @@ TEST(Coupling, PressureGainAtConstantVolume) {
     EXPECT_NEAR(100 * first_order, printed.pressure_gain, 0.051) << nu;
 
     const auto path = path_from(nu, {leg(Mode::D2, 1.0)});
-    const double P = predict::predict(Model::evolution, p, Coupling::single, path, steady_start(p, nu),
+    const double P = predict::predict(Rung::evolution, p, Coupling::single, path, steady_start(p, nu),
                                       {{0, path[0].length}}, {}, {}, {})
                          .rows.at(0)
                          .state.P;
@@ -87,8 +87,8 @@ TEST(Coupling, StressRatioStaysCloseToEquation17) {
     const auto path = path_from(nu, {leg(Mode::D2, 0.3)});
     const auto points = predict::uniform_points(path, 1000);
     const auto start = steady_start(p, nu);
-    const auto coupled = predict::predict(Model::evolution, p, Coupling::single, path, start, points, {}, {}, {}).rows;
-    const auto closed = predict::predict(Model::reduced, p, Coupling::single, path, start, points, {}, {}, {}).rows;
+    const auto coupled = predict::predict(Rung::evolution, p, Coupling::single, path, start, points, {}, {}, {}).rows;
+    const auto closed = predict::predict(Rung::reduced, p, Coupling::single, path, start, points, {}, {}, {}).rows;
     double largest = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
       largest = std::max(largest, std::abs(coupled[i].s_par - closed[i].s_par));

@@ -18,7 +18,7 @@ namespace grainlaw {
 namespace {
 
 using predict::Method;
-using predict::Model;
+
 using predict::Prediction;
 using testing::figure;
 using testing::leg;
@@ -38,8 +38,8 @@ double isotropic_loop(Coupling coupling, const predict::Tolerances& tolerances) 
   const LawParameters<double> p = parameters();
   const auto path = path_from(kLow, {leg_to(Mode::ISO, kHigh), leg_to(Mode::ISO, kLow, true)});
   const auto points = predict::uniform_points(path, 100);
-  const Prediction loop = predict::predict(Model::evolution, p, coupling, path, predict::state_from_law(p, kLow),
-                                           points, tolerances, {}, {});
+  const Prediction loop = predict::predict(Rung::evolution, p, coupling, path, predict::state_from_law(p, kLow), points,
+                                           tolerances, {}, {});
   EXPECT_EQ(loop.rows.size(), points.size());
   EXPECT_NEAR(loop.rows.back().nu, kLow, 1e-15);
   double error = 0;
@@ -58,8 +58,8 @@ double sheared_loop(Coupling coupling, const predict::Tolerances& tolerances) {
   const LawParameters<double> p = parameters();
   const auto path = path_from(kLow, {leg(Mode::D2, 0.1), leg_to(Mode::ISO, kHigh), leg_to(Mode::ISO, kLow, true)});
   const auto points = predict::uniform_points(path, 100);
-  const Prediction loop = predict::predict(Model::evolution, p, coupling, path, predict::state_from_law(p, kLow),
-                                           points, tolerances, {}, {});
+  const Prediction loop = predict::predict(Rung::evolution, p, coupling, path, predict::state_from_law(p, kLow), points,
+                                           tolerances, {}, {});
   EXPECT_EQ(loop.rows.size(), points.size());
   const LawState<double>& corner = loop.rows.at(100).state;
   EXPECT_GT(corner.F.norm(), 0.1) << "there is fabric to couple";
@@ -123,7 +123,7 @@ TEST(Isotropic, FabricAndStressKeepTheirDirectionUnderCompression) {
   LawState<double> start = predict::state_from_law(p, 0.70);
   start.F << 0.09, -0.03, 0.02, 0.01, -0.04;
   start.sigma << 0.001, 0.0005, -0.0002, 0, 0.0001;
-  const auto rows = predict::predict(Model::evolution, p, Coupling::energy, path, start,
+  const auto rows = predict::predict(Rung::evolution, p, Coupling::energy, path, start,
                                      predict::uniform_points(path, 10), {1e-10, 1e-14}, {}, {})
                         .rows;
   ASSERT_EQ(rows.size(), 11U);
@@ -155,7 +155,7 @@ TEST(Isotropic, O8UnjammingIsFoundWhereThePressureVanishes) {
       const double P = start.P;
       start.P *= part;
       const Prediction unloading =
-          predict::predict(Model::evolution, p, Coupling::energy, path, start, points, {1e-10, 1e-14, method}, {}, {});
+          predict::predict(Rung::evolution, p, Coupling::energy, path, start, points, {1e-10, 1e-14, method}, {}, {});
       EXPECT_TRUE(unloading.unjammed);
       EXPECT_LT(unloading.rows.size(), points.size());
       const double at = 3 * unloading.unjammed_at.e;  // tr D = 3
@@ -172,7 +172,7 @@ TEST(Isotropic, O8UnjammingIsFoundWhereThePressureVanishes) {
 TEST(Isotropic, UnjammedPathsEndBeforeTheirNextSegment) {
   const LawParameters<double> p = parameters();
   const auto path = path_from(0.68, {leg(Mode::D2, 0.1), leg_to(Mode::ISO, 0.60, true), leg_to(Mode::ISO, 0.70)});
-  for (const Model model : {Model::reduced, Model::evolution}) {
+  for (const Rung model : {Rung::reduced, Rung::evolution}) {
     const Prediction prediction = predict::predict(model, p, Coupling::energy, path, predict::state_from_law(p, 0.68),
                                                    {{0, 0.0}, {2, 0.01}}, {}, {}, {});
     EXPECT_TRUE(prediction.unjammed);
@@ -191,7 +191,7 @@ TEST(Isotropic, ShearedUnloadingUnjamsWithEitherMethod) {
     double at[2] = {};
     for (const Method method : {Method::adams, Method::bdf}) {
       const Prediction prediction =
-          predict::predict(Model::evolution, p, coupling, path, start, predict::uniform_points(path, 500),
+          predict::predict(Rung::evolution, p, coupling, path, start, predict::uniform_points(path, 500),
                            {1e-10, 1e-14, method}, {}, {});
       EXPECT_TRUE(prediction.unjammed);
       EXPECT_EQ(prediction.unjammed_at.segment, 1);

@@ -85,7 +85,7 @@ std::vector<predict::PredictedRow> integrate(const Case& c, double part, int out
   LawState<double> start = c.start;
   start.sigma = shear_direction(path) * (part * s_max_at(c, kStart) * start.P);
   start.F = shear_direction(path) * (part * c.law.fabric_max.value(kStart, c.law.shear_nu_c));
-  const auto prediction = predict::predict(predict::Model::evolution, c.law, Coupling::single, path, start,
+  const auto prediction = predict::predict(Rung::evolution, c.law, Coupling::single, path, start,
                                            predict::uniform_points(path, outputs), t, {}, {});
   EXPECT_EQ(prediction.rows.size(), static_cast<std::size_t>(outputs) + 1);
   if (rhs_evaluations) *rhs_evaluations = prediction.statistics.rhs_evaluations;

@@ -17,7 +17,7 @@ namespace grainlaw {
 namespace {
 
 using predict::Method;
-using predict::Model;
+
 using predict::OutputPoint;
 using predict::Prediction;
 using testing::figure;
@@ -33,7 +33,7 @@ LawParameters<double> parameters() {
   return p;
 }
 
-Prediction run(Model model, const std::vector<StraightSegment>& path, const LawState<double>& start,
+Prediction run(Rung model, const std::vector<StraightSegment>& path, const LawState<double>& start,
                const std::vector<OutputPoint>& points, Method method = Method::adams) {
   return predict::predict(model, parameters(), Coupling::energy, path, start, points, {1e-8, 1e-12, method}, {}, {});
 }
@@ -51,7 +51,7 @@ TEST(Rows, O10TheInitialStateIsReturnedExactly) {
          {std::vector<OutputPoint>{{0, 0}}, {{0, 0}, {0, 0}}, {{0, 0}, {0, 0.04}, {0, 0.04}, {1, 0.01}, {1, 0.01}}}) {
       for (const bool measured : {false, true}) {
         const LawState<double>& from = measured ? start : of_law;
-        const auto rows = run(Model::evolution, path, from, points, method).rows;
+        const auto rows = run(Rung::evolution, path, from, points, method).rows;
         ASSERT_EQ(rows.size(), points.size());
         off = std::max({off, std::abs(rows[0].state.P - from.P), (rows[0].state.sigma - from.sigma).norm(),
                         (rows[0].state.F - from.F).norm(), rows[0].strain.tensor.norm()});
@@ -63,7 +63,7 @@ TEST(Rows, O10TheInitialStateIsReturnedExactly) {
         }
       }
     }
-    EXPECT_TRUE(run(Model::evolution, path, start, {}, method).rows.empty());
+    EXPECT_TRUE(run(Rung::evolution, path, start, {}, method).rows.empty());
   }
   figure("O10.initial_state", off, 0);
   figure("O10.repeated_rows", apart, 0);
@@ -89,7 +89,7 @@ TEST(Rows, O10WhatIsOutOfOrderIsRefusedByName) {
     EXPECT_TRUE(refused) << name;
     unnamed += !refused;
   };
-  for (const Model model : {Model::reduced, Model::evolution}) {
+  for (const Rung model : {Rung::reduced, Rung::evolution}) {
     expect_refusal([&] { run(model, {}, start, {}); }, "no segments");
     for (const OutputPoint& bad : {OutputPoint{0, 0.03}, {0, kNaN}, {0, -1.0}, {0, 0.2}, {2, 0.0}, {-1, 0.0}}) {
       expect_refusal([&] { run(model, path, start, {{0, 0.05}, bad}); }, "output point 1");
@@ -132,7 +132,7 @@ TEST(Rows, O11WorkPerRowDoesNotGrowWithTheNumberOfRows) {
     double per_row[2] = {}, last[2] = {};
     for (const int i : {0, 1}) {
       const int rows = i == 0 ? 10000 : 1000000;
-      const Prediction prediction = run(Model::evolution, path, start, predict::uniform_points(path, rows - 1), method);
+      const Prediction prediction = run(Rung::evolution, path, start, predict::uniform_points(path, rows - 1), method);
       ASSERT_EQ(prediction.rows.size(), static_cast<std::size_t>(rows));
       per_row[i] = static_cast<double>(prediction.statistics.rhs_evaluations) / rows;
       last[i] = prediction.rows.back().state.P;
@@ -150,7 +150,7 @@ TEST(Rows, O11WorkPerCornerDoesNotGrowWithTheNumberOfCorners) {
     const int corners = i == 0 ? 1000 : 20000;
     const auto path = testing::reversals(0.74, corners, 1e-3 * (corners + 1));
     const Prediction prediction =
-        run(Model::evolution, path, predict::state_from_law(parameters(), 0.74), predict::uniform_points(path, 1));
+        run(Rung::evolution, path, predict::state_from_law(parameters(), 0.74), predict::uniform_points(path, 1));
     ASSERT_EQ(prediction.rows.size(), 2 * path.size());
     EXPECT_EQ(prediction.statistics.restarts, corners + 1);
     per_corner[i] = static_cast<double>(prediction.statistics.rhs_evaluations) / corners;
@@ -166,7 +166,7 @@ TEST(Rows, O11LargeStrainSaturates) {
       for (const Coupling coupling : {Coupling::energy, Coupling::single}) {
         const LawParameters<double> p = parameters();
         const auto path = path_from(nu, {leg(Mode::D2, 10)});
-        const auto rows = predict::predict(Model::evolution, p, coupling, path, predict::state_from_law(p, nu),
+        const auto rows = predict::predict(Rung::evolution, p, coupling, path, predict::state_from_law(p, nu),
                                            predict::uniform_points(path, 20), {1e-8, 1e-12, method}, {}, {})
                               .rows;
         ASSERT_EQ(rows.size(), 21U);

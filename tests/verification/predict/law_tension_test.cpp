@@ -16,7 +16,7 @@ namespace grainlaw {
 namespace {
 
 using predict::Method;
-using predict::Model;
+
 using testing::figure;
 using testing::leg;
 using testing::leg_to;
@@ -52,7 +52,7 @@ struct Tally {
   double most_tensile = 0;  // largest -P of any row
 };
 
-Tally walk_random_paths(Model model) {
+Tally walk_random_paths(Rung model) {
   Random random;
   Tally tally;
   const LawParameters<double> p = parameters();
@@ -92,7 +92,7 @@ Tally walk_random_paths(Model model) {
 }
 
 TEST(Tension, O9NoRowIsTensileOnPathsThatUnjamAndCompressAgain) {
-  for (const Model model : {Model::reduced, Model::evolution}) {
+  for (const Rung model : {Rung::reduced, Rung::evolution}) {
     const Tally tally = walk_random_paths(model);
     EXPECT_GT(tally.unjammed, 300);
     EXPECT_LT(tally.unjammed, tally.paths);

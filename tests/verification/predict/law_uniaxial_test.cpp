@@ -19,7 +19,7 @@ namespace grainlaw {
 namespace {
 
 using predict::Method;
-using predict::Model;
+
 using testing::figure;
 using testing::leg_to;
 using testing::path_from;
@@ -60,7 +60,7 @@ TEST(Uniaxial, AgreesWithAnIndependentIntegrator) {
         const auto path = path_from(nu_0, {leg_to(Mode::UNI, nu_1)});
         const Invariants expected = by_odeint(p, coupling, nu_0, path[0].length);
         for (const Method method : {Method::adams, Method::bdf}) {
-          const auto rows = predict::predict(Model::evolution, p, coupling, path, predict::state_from_law(p, nu_0),
+          const auto rows = predict::predict(Rung::evolution, p, coupling, path, predict::state_from_law(p, nu_0),
                                              {{0, path[0].length}}, {1e-12, 1e-16, method}, {}, {})
                                 .rows;
           ASSERT_EQ(rows.size(), 1U);
@@ -91,7 +91,7 @@ TEST(Uniaxial, RotatedExperimentGivesTheRotatedResult) {
   turned_start.sigma = deviator<double>(rotated(tensor_of(start.sigma)));
   turned_start.F = deviator<double>(rotated(tensor_of(start.F)));
 
-  for (const Model model : {Model::reduced, Model::evolution}) {
+  for (const Rung model : {Rung::reduced, Rung::evolution}) {
     const auto points = predict::uniform_points(path, 20);
     const predict::Tolerances tight{1e-11, 1e-15};
     const auto a = predict::predict(model, p, Coupling::energy, path, start, points, tight, {}, {}).rows;
@@ -105,7 +105,7 @@ TEST(Uniaxial, RotatedExperimentGivesTheRotatedResult) {
                       (tensor_of(b[i].state.F) - rotated(tensor_of(a[i].state.F))).norm(),
                       std::abs(a[i].s_par - b[i].s_par), std::abs(a[i].F_par - b[i].F_par)});
     }
-    figure("law.objectivity_" + to_string(model), off, model == Model::reduced ? 1e-14 : 1e-9);
+    figure("law.objectivity_" + to_string(model), off, model == Rung::reduced ? 1e-14 : 1e-9);
   }
 }
 
@@ -135,7 +135,7 @@ TEST(Uniaxial, ReducedModelGivesThePublishedCurves) {
   for (const Curve& curve : curves) {
     const auto path = path_from(curve.nu_0, {leg_to(Mode::UNI, 0.8215)});
     const auto at = [&](double eps_dev) {
-      return predict::predict(Model::reduced, p, Coupling::energy, path, predict::state_from_law(p, curve.nu_0),
+      return predict::predict(Rung::reduced, p, Coupling::energy, path, predict::state_from_law(p, curve.nu_0),
                               {{0, eps_dev}}, {}, {}, {})
           .rows.at(0);
     };

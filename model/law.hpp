@@ -1,0 +1,56 @@
+#pragma once
+// The ladder of laws behind one right-hand side, cheapest first:
+//   reduced    Eqs. (17), (18), P by Eq. (14): dP = B dx, ds = beta_s (s_max N - s) de, dF' = beta_F (F_max N - F') de.
+//              Integrated, not evaluated at the current nu as in the paper's figures (reduced_law.hpp); the same at constant nu
+//   evolution  Eq. (16), evolution.hpp
+//   memory     Eq. (16) with a memory, memory.hpp; its reversals are jumps
+// d(state) per unit of the path parameter, corotational terms included. No heap, no solver's header.
+
+#include <array>
+#include <string>
+
+#include "model/memory.hpp"
+#include "model/reduced_law.hpp"
+
+namespace grainlaw {
+
+enum class Rung { reduced, evolution, memory };
+
+/// The rung's name in files and options; the description of `--model`.
+std::string to_string(Rung rung);
+/// The rung of a name; throws InvalidInput naming an unknown one.
+Rung rung_of(const std::string& name);
+inline constexpr std::array<Rung, 3> kRungs{Rung::reduced, Rung::evolution, Rung::memory};
+
+/// What the rung takes from the volume fraction alone.
+template <class T>
+LawModuli<T> law_moduli(const LawParameters<T>& p, double nu, Rung rung) {
+  return rung == Rung::memory ? memory_moduli(p, nu) : moduli_at(p, nu);
+}
+
+/// Turns the state where the path does: the jump of Rung::memory at a reversal. To be called at every corner of a path, and
+/// within a segment where reversal_value falls through zero; other rungs have none.
+template <class T>
+void turn_corner(Rung rung, LawState<T>& y, const LawDirection& direction) {
+  if (rung == Rung::memory && reversal_value(y, direction) < 0.0) reverse(y);
+}
+
+/// d(state)/de of `rung` at a state, with `m` by law_moduli(p, nu, rung). Finite for P > 0 and finite arguments.
+template <class T>
+LawState<T> law_rate(const LawModuli<T>& m, const LawParameters<T>& p, Rung rung, Coupling coupling,
+                     const LawState<T>& y, const LawDirection& direction) {
+  LawState<T> rate = rung == Rung::memory      ? memory_rate(m, p, coupling, y, direction)
+                     : rung == Rung::evolution ? evolution_rate(m, p.anisotropy, coupling, y, direction)
+                                               : reduced_rate(m, y, direction);
+  add_corotation(y, direction, rate);
+  return rate;
+}
+
+/// The same at volume fraction `nu`.
+template <class T>
+LawState<T> law_rate(const LawParameters<T>& p, Rung rung, Coupling coupling, const LawState<T>& y, double nu,
+                     const LawDirection& direction) {
+  return law_rate(law_moduli(p, nu, rung), p, rung, coupling, y, direction);
+}
+
+}  // namespace grainlaw

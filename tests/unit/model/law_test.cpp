@@ -1,0 +1,149 @@
+#include "model/law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/error.hpp"
+#include "model/path.hpp"
+
+namespace grainlaw {
+namespace {
+
+constexpr Coupling kCouplings[] = {Coupling::energy, Coupling::single};
+
+LawParameters<double> parameters() {
+  LawParameters<double> p = published_parameters();
+  p.anisotropy.a2 = 1.18;
+  return p;
+}
+
+LawState<double> some_state() {
+  LawState<double> y{0.021, {}, {}, {}};
+  y.sigma << 0.0021, -0.0007, 0.0004, 0.0011, -0.0003;
+  y.F << 0.08, 0.02, -0.03, 0.01, 0.05;
+  y.s_r << -0.05, 0.02, -0.08, 0.01, 0.03;
+  return y;
+}
+
+Eigen::Matrix3d some_gradient() {
+  Eigen::Matrix3d L;
+  L << 0.4, 0.9, -0.2, -0.3, 0.1, 0.15, -0.8, 0.45, -1.1;
+  return L;
+}
+
+Deviator<double> turned(const Deviator<double>& q, const Eigen::Matrix3d& R) {
+  return deviator<double>(Eigen::Matrix3d(R * tensor_of(q) * R.transpose()));
+}
+
+LawState<double> turned(const LawState<double>& y, const Eigen::Matrix3d& R) {
+  return {y.P, turned(y.sigma, R), turned(y.F, R), turned(y.s_r, R)};
+}
+
+void expect_equal(const LawState<double>& a, const LawState<double>& b, double tolerance) {
+  EXPECT_NEAR(a.P, b.P, tolerance);
+  EXPECT_LE((a.sigma - b.sigma).norm(), tolerance);
+  EXPECT_LE((a.F - b.F).norm(), tolerance);
+  EXPECT_LE((a.s_r - b.s_r).norm(), tolerance);
+}
+
+TEST(Law, NamesReadBack) {
+  for (const Rung rung : kRungs) EXPECT_EQ(rung_of(to_string(rung)), rung);
+  EXPECT_THROW(rung_of("Eq. 16"), InvalidInput);
+}
+
+TEST(Law, DirectionOfAVelocityGradient) {
+  const Eigen::Matrix3d L = some_gradient();
+  const LawDirection direction = law_direction(L), of_rate = law_direction(StrainRate{0.5 * (L + L.transpose())});
+  EXPECT_EQ(direction.dx, of_rate.dx);
+  EXPECT_EQ(direction.N, of_rate.N);
+  const Eigen::Matrix3d W = 0.5 * (L - L.transpose());
+  const Eigen::Vector3d a(0.3, -0.8, 0.5);
+  EXPECT_LE((W * a - direction.spin.cross(a)).norm(), 1e-15);
+}
+
+TEST(Law, CorotationIsWaMinusAw) {
+  const Eigen::Matrix3d L = some_gradient(), W = 0.5 * (L - L.transpose());
+  const Deviator<double> q = some_state().F;
+  const Eigen::Matrix3d a = tensor_of(q);
+  EXPECT_LE((tensor_of(corotation(law_direction(L).spin, q)) - (W * a - a * W)).norm(), 1e-15);
+}
+
+TEST(Law, SpinAloneTurnsTheState) {
+  // dL = W: after e the state is R y R^T with R = exp(W e); its rate at the start is W y - y W, whatever the rung.
+  const Eigen::Vector3d w(0.3, -0.5, 0.8);
+  LawDirection direction;
+  direction.spin = w;
+  const double h = 1e-6;
+  const Eigen::Matrix3d forth = Eigen::AngleAxisd(h * w.norm(), w.normalized()).toRotationMatrix();
+  const LawState<double> y = some_state(), after = turned(y, forth), before = turned(y, forth.transpose());
+  for (const Rung rung : kRungs) {
+    const LawState<double> rate = law_rate(parameters(), rung, Coupling::energy, y, 0.72, direction);
+    EXPECT_EQ(rate.P, 0);
+    EXPECT_LE((rate.sigma - (after.sigma - before.sigma) / (2 * h)).norm(), 1e-11);
+    EXPECT_LE((rate.F - (after.F - before.F) / (2 * h)).norm(), 1e-10);
+    EXPECT_LE((rate.s_r - (after.s_r - before.s_r) / (2 * h)).norm(), 1e-10);
+  }
+}
+
+TEST(Law, RateOfATurnedExperimentIsTheTurnedRate) {
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(2.1, Eigen::Vector3d(-0.4, 1, 0.7).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d L = some_gradient();
+  for (const Rung rung : kRungs) {
+    for (const Coupling coupling : kCouplings) {
+      const LawState<double> y = some_state();
+      const LawState<double> a = law_rate(parameters(), rung, coupling, y, 0.7, law_direction(L));
+      const LawState<double> b = law_rate(parameters(), rung, coupling, turned(y, R), 0.7,
+                                          law_direction(Eigen::Matrix3d(R * L * R.transpose())));
+      expect_equal(b, turned(a, R), 1e-12);
+    }
+  }
+}
+
+TEST(Law, RateDoesNotSeeAnObserverWhoTurns) {
+  // In a frame that turns with Q(t), dQ/dt = Omega Q, at Q = 1: L becomes L + Omega, and every rate gains Omega a - a Omega.
+  const Eigen::Matrix3d L = some_gradient();
+  const Eigen::Vector3d omega(-0.7, 0.2, 1.3);
+  Eigen::Matrix3d Omega;
+  Omega << 0, -omega(2), omega(1), omega(2), 0, -omega(0), -omega(1), omega(0), 0;
+  const LawState<double> y = some_state();
+  for (const Rung rung : kRungs) {
+    LawState<double> still = law_rate(parameters(), rung, Coupling::energy, y, 0.7, law_direction(L));
+    still.sigma += corotation(omega, y.sigma);
+    still.F += corotation(omega, y.F);
+    still.s_r += corotation(omega, y.s_r);
+    expect_equal(law_rate(parameters(), rung, Coupling::energy, y, 0.7, law_direction(Eigen::Matrix3d(L + Omega))),
+                 still, 1e-13);
+  }
+}
+
+TEST(Law, ReducedIsEvolutionWithoutCouplingAtConstantVolume) {
+  LawParameters<double> p = parameters();
+  p.anisotropy.a0 = 0;
+  const LawDirection shear = law_direction(direction_of(Mode::D2));
+  const LawState<double> y = some_state();
+  expect_equal(law_rate(p, Rung::reduced, Coupling::single, y, 0.7, shear),
+               law_rate(p, Rung::evolution, Coupling::single, y, 0.7, shear), 1e-15);
+}
+
+TEST(Law, ReducedKeepsTheStressRatioInIsotropicStrain) {
+  // equations.md 5.5: its rates assume nothing of P, d(sigma'/P) = 0 without shear.
+  const LawState<double> y = some_state(), r = law_rate(parameters(), Rung::reduced, Coupling::energy, y, 0.7,
+                                                        law_direction(direction_of(Mode::ISO)));
+  EXPECT_LE((r.sigma / y.P - y.sigma * (r.P / (y.P * y.P))).norm(), 1e-15);
+  EXPECT_EQ(r.P, 3 * parameters().isotropic.B_star(0.7));
+}
+
+TEST(Law, OnlyMemoryTurnsCorners) {
+  const LawDirection back = law_direction(direction_of(Mode::D2, "xyz", true));
+  for (const Rung rung : kRungs) {
+    LawState<double> y{0.02, -0.002 * back.N, {}, Deviator<double>::Zero()};
+    y.F.setZero();
+    ASSERT_LT(reversal_value(y, back), 0);
+    turn_corner(rung, y, back);
+    EXPECT_LE((y.s_r - (rung == Rung::memory ? 1.0 : 0.0) * y.sigma / y.P).norm(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace grainlaw

@@ -1,0 +1,158 @@
+#include "model/memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "model/law.hpp"
+#include "model/path.hpp"
+
+namespace grainlaw {
+namespace {
+
+LawParameters<double> parameters() {
+  LawParameters<double> p = published_parameters();
+  p.anisotropy.a2 = 1.18;
+  p.memory = {0.782, 0.59, 16.5, 160, 12};
+  return p;
+}
+
+const Deviator<double> kN = law_direction(direction_of(Mode::D2)).N;
+const Deviator<double> kZero = Deviator<double>::Zero();
+
+LawState<double> coaxial(double P, double s, double F, double s_r) { return {P, s * P * kN, F * kN, s_r * kN}; }
+
+LawState<double> rate(const LawParameters<double>& p, const LawState<double>& y, double nu, const LawDirection& d) {
+  return law_rate(p, Rung::memory, Coupling::energy, y, nu, d);
+}
+
+TEST(Memory, InvariantFormOnCoaxialPaths) {
+  // law-hypotheses R1, with sg the sign of the shear: S = 1 - sg (s - s_r)/Delta, Delta = s_max - sg s_r
+  const LawParameters<double> p = parameters();
+  for (const double nu : {0.68, 0.74, 0.82}) {
+    const double s_max = p.stress_ratio_max.value(nu, p.shear_nu_c), F_max = p.fabric_max.value(nu, p.shear_nu_c);
+    for (const double sg : {1.0, -1.0}) {
+      for (const double dx : {-0.8, 0.0, 1.3}) {
+        const double P = p.isotropic.P_star(nu), F = 0.05, s_r = -sg * 0.1, s = s_r + sg * 0.06, de = 1.7;
+        const LawState<double> r = rate(p, coaxial(P, s, F, s_r), nu, {dx, de, sg * kN});
+        const double B = p.isotropic.B_star(nu), A2 = 1.18 * B * F, A1 = 2.0 / 3 * (A2 - s * P);
+        const double S = 1 - sg * (s - s_r) / (s_max - sg * s_r), f = sg * F / F_max;
+        const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59);
+        const double P_t = P + (p.steady.P_star(nu) - P) * f * std::abs(f);
+        EXPECT_NEAR(r.P, B * dx + (A1 * S * sg + 16.5 * (P_t - P) * (1 - S)) * de, 1e-12);
+        EXPECT_NEAR(r.sigma.dot(kN), A2 * dx + DG * S * sg * de, 1e-12);
+        EXPECT_NEAR(r.F.dot(kN), 160 * (F_max / s_max * s - F) * de - 12 * F * std::max(dx, 0.0), 1e-12);
+        EXPECT_LE((r.sigma - r.sigma.dot(kN) * kN).norm() + (r.F - r.F.dot(kN) * kN).norm(), 1e-14) << "stays co-axial";
+        EXPECT_TRUE(r.s_r.isZero(0));
+      }
+    }
+  }
+}
+
+TEST(Memory, WithoutItsTermsItIsEquation16) {
+  // k = c_F = 0, s_r = 0 and P on ISO unloading: with DG = beta_s s_max P the rows of P and sigma' are those of Eq. (16); the
+  // fabric's where s = s_max N, with lambda = beta_F.
+  LawParameters<double> p = parameters();
+  for (const double nu : {0.68, 0.74, 0.82}) {
+    const LawModuli<double> m = moduli_at(p, nu);
+    const double P = p.isotropic.P_star(nu);
+    p.memory = {m.beta_s * m.s_max * P, 0, 0, m.beta_F, 0};
+    for (const double dx : {-0.5, 0.0, 0.9}) {
+      LawState<double> y{P, 0.03 * P * kN, 0.06 * kN, kZero};
+      y.sigma(3) += 0.04 * P;
+      y.F(1) -= 0.02;
+      const LawDirection d{dx, 1.3, kN};
+      for (const Coupling coupling : {Coupling::energy, Coupling::single}) {
+        const LawState<double> memory = law_rate(p, Rung::memory, coupling, y, nu, d),
+                               eq16 = law_rate(p, Rung::evolution, coupling, y, nu, d);
+        EXPECT_NEAR(memory.P, eq16.P, 1e-13);
+        EXPECT_LE((memory.sigma - eq16.sigma).norm(), 1e-13);
+        y.sigma = m.s_max * P * kN;
+        EXPECT_LE((law_rate(p, Rung::memory, coupling, y, nu, d).F - law_rate(p, Rung::evolution, coupling, y, nu, d).F)
+                      .norm(),
+                  1e-12);
+      }
+    }
+  }
+}
+
+TEST(Memory, ShearFirstGoesWithTheElasticSlopeInAnyDirectionAfterAReversal) {
+  const LawParameters<double> p = parameters();
+  const double nu = 0.7, P = p.isotropic.P_star(nu);
+  LawState<double> y = coaxial(P, 0.16, 0.12, 0);
+  const LawDirection back{0, 1, -kN};
+  const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59);
+  EXPECT_NEAR(rate(p, y, nu, back).sigma.dot(kN), -DG, 1e-14) << "not yet turned, but treated as if";
+  turn_corner(Rung::memory, y, back);
+  EXPECT_NEAR(rate(p, y, nu, back).sigma.dot(kN), -DG, 1e-14);
+}
+
+TEST(Memory, StressRatioEndsOnItsLimitWhateverTheReversal) {
+  // flow vanishes where s = s_b, |s_b| = s_max, s_b - s_r along N
+  const LawParameters<double> p = parameters();
+  const double nu = 0.7, P = p.isotropic.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
+  LawState<double> y{P, kZero, kZero, kZero};
+  y.s_r << 0.04, -0.03, 0.06, 0.01, -0.02;
+  const double along = y.s_r.dot(kN), Delta = -along + std::sqrt(along * along + s_max * s_max - y.s_r.squaredNorm());
+  const Deviator<double> s_b = y.s_r + Delta * kN;
+  ASSERT_NEAR(s_b.norm(), s_max, 1e-15);
+  y.sigma = P * s_b;
+  EXPECT_LE(rate(p, y, nu, {0, 1, kN}).sigma.norm(), 1e-15);
+}
+
+TEST(Memory, NearTheLimitNothingStiffensAndFromBeyondItComesBack) {
+  const LawParameters<double> p = parameters();
+  const double nu = 0.7, P = p.isotropic.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
+  const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59);
+  for (const double beyond : {0.999, 1.0, 1.001, 1.3}) {
+    const LawState<double> y = coaxial(P, beyond * s_max, 0.1, beyond * s_max);
+    const double slope = rate(p, y, nu, {0, 1, kN}).sigma.dot(kN);
+    EXPECT_NEAR(slope, DG * (1 - beyond) / kLeastDistance, 1e-12) << beyond;
+  }
+}
+
+TEST(Memory, PressureGoesToItsShearedLevel) {
+  // At s = s_max, F = F_max all terms but the relaxation vanish: dP = k (P_D2 - P) de.
+  const LawParameters<double> p = parameters();
+  const double nu = 0.69, P = p.isotropic.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
+  const LawState<double> y = coaxial(P, s_max, p.fabric_max.value(nu, p.shear_nu_c), 0);
+  EXPECT_NEAR(rate(p, y, nu, {0, 1, kN}).P, 16.5 * (p.steady.P_star(nu) - P), 1e-14);
+}
+
+TEST(Memory, BulkModulusIsThatOfTheReferenceAtThePressure) {
+  // nu_P to first order: second order in P - P_iso. Below jamming the tangent: finite at any nu while P > 0.
+  const LawParameters<double> p = parameters();
+  const LawDirection iso = law_direction(direction_of(Mode::ISO));
+  for (const double nu : {0.67, 0.7, 0.8}) {
+    for (const double shift : {1e-3, 1e-4}) {
+      const double nu_P = nu * (1 + shift);
+      const LawState<double> y{p.isotropic.P_star(nu_P), kZero, kZero, kZero};
+      const double curvature = 40;  // of B over nu at .67, the largest, in B/nu^2
+      EXPECT_NEAR(rate(p, y, nu, iso).P / 3, p.isotropic.B_star(nu_P), curvature * shift * shift) << nu;
+    }
+  }
+  const LawState<double> y{1e-3, kZero, kZero, kZero};
+  for (const double nu : {0.66, p.isotropic.pressure.nu_c, 0.6}) {
+    const double B = rate(p, y, nu, iso).P / 3;
+    EXPECT_GT(B, 0.2) << nu;
+    EXPECT_LT(B, 0.3) << nu;
+  }
+}
+
+TEST(Memory, OtherScalarGivesTheSameRate) {
+  const LawParameters<double> p = parameters();
+  LawState<double> y = coaxial(0.021, 0.08, 0.05, -0.03);
+  y.sigma(2) += 3e-4;
+  const LawDirection d = law_direction(direction_of(Mode::UNI));
+  const auto q = cast<long double>(p);
+  const LawState<long double> wide{y.P, y.sigma.cast<long double>(), y.F.cast<long double>(),
+                                   y.s_r.cast<long double>()};
+  const auto a = rate(p, y, 0.7, d);
+  const auto b = law_rate(q, Rung::memory, Coupling::energy, wide, 0.7, d);
+  EXPECT_NEAR(a.P, static_cast<double>(b.P), 1e-13 * std::abs(a.P));
+  EXPECT_LE((a.sigma - b.sigma.cast<double>()).norm(), 1e-13 * a.sigma.norm());
+  EXPECT_LE((a.F - b.F.cast<double>()).norm(), 1e-13 * a.F.norm());
+}
+
+}  // namespace
+}  // namespace grainlaw
