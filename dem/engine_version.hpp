@@ -4,6 +4,6 @@
 
 namespace grainlaw::dem {
 
-inline constexpr int kEngineVersion = 2;
+inline constexpr int kEngineVersion = 3;
 
 }  // namespace grainlaw::dem

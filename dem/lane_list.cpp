@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "dem/lane_search.hpp"
 #include "model/error.hpp"
@@ -12,10 +13,14 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double kRounding = 1e-6;        // of the distances that the search computes in single precision
-constexpr std::size_t kWindow = 2048;      // spheres that are sorted by number of neighbours
+constexpr std::size_t kWindow = kBlockSize;  // spheres that are sorted by number of neighbours
 constexpr int kMaxBinsPerAxis = 1024;
 
 using Index3 = std::array<std::uint32_t, 3>;
+
+// Bins to the cutoff along each axis. Spheres lie in memory layer by layer of z: thin layers, and what a thread reads of
+// its neighbour's spheres is little.
+constexpr Index3 kReach{1, 1, 2};
 
 /// The leading 32 bits of a position, as a fraction of the edge.
 std::int32_t leading(std::int32_t x) { return x; }
@@ -49,7 +54,7 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
   const double cutoff = 2 * farthest * (1 + kRounding);
   const double per_axis = std::cbrt(static_cast<double>(n)) + 1;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double fit = std::min({edge[a] / cutoff, 4 * per_axis, double{kMaxBinsPerAxis}});
+    const double fit = std::min({kReach[a] * edge[a] / cutoff, 4 * per_axis, double{kMaxBinsPerAxis}});
     s.bins[a] = static_cast<std::uint32_t>(std::max(1.0, fit));
     s.edge[a] = static_cast<float>(edge[a] * 0x1p-32);
   }
@@ -86,24 +91,24 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
   return s;
 }
 
-/// Bins next to b along an axis of `count` bins, each once: [first, last] of up to two runs.
+/// Bins up to `reach` away from b along an axis of `bins` bins, each once: [first, last] of up to two runs.
 struct Runs {
   std::array<std::array<std::uint32_t, 2>, 2> run{};
   std::size_t count = 1;
 };
 
-Runs runs_around(std::uint32_t b, std::uint32_t bins) {
+Runs runs_around(std::uint32_t b, std::uint32_t bins, std::uint32_t reach) {
   Runs runs;
-  if (bins <= 3) {
+  if (bins <= 2 * reach + 1) {
     runs.run[0] = {0, bins - 1};
-  } else if (b == 0) {
-    runs.run = {{{0, 1}, {bins - 1, bins - 1}}};
+  } else if (b < reach) {
+    runs.run = {{{0, b + reach}, {b + bins - reach, bins - 1}}};
     runs.count = 2;
-  } else if (b == bins - 1) {
-    runs.run = {{{0, 0}, {bins - 2, bins - 1}}};
+  } else if (b + reach >= bins) {
+    runs.run = {{{0, b + reach - bins}, {b - reach, bins - 1}}};
     runs.count = 2;
   } else {
-    runs.run[0] = {b - 1, b + 1};
+    runs.run[0] = {b - reach, b + reach};
   }
   return runs;
 }
@@ -148,13 +153,13 @@ std::uint32_t count_near(const Spatial& s, std::size_t p, const std::uint32_t* n
 
 /// Spheres in the bins around that of sphere p.
 struct Surroundings {
-  std::array<SearchRange, 18> range;
+  std::array<SearchRange, 4 * (2 * kReach[1] + 1) * (2 * kReach[2] + 1)> range;
   std::size_t count = 0, spheres = 0;
 };
 
 Surroundings surroundings(const Spatial& s, std::size_t p) {
-  const Runs along_x = runs_around(s.bin_along(0, s.x[p]), s.bins[0]), along_y = runs_around(s.bin_along(1, s.y[p]), s.bins[1]),
-             along_z = runs_around(s.bin_along(2, s.z[p]), s.bins[2]);
+  const Runs along_x = runs_around(s.bin_along(0, s.x[p]), s.bins[0], kReach[0]), along_y = runs_around(s.bin_along(1, s.y[p]), s.bins[1], kReach[1]),
+             along_z = runs_around(s.bin_along(2, s.z[p]), s.bins[2], kReach[2]);
   Surroundings around;
   for (std::size_t kz = 0; kz < along_z.count; ++kz) {
     for (std::uint32_t bz = along_z.run[kz][0]; bz <= along_z.run[kz][1]; ++bz) {
@@ -260,8 +265,7 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   }
   constexpr auto row_size = static_cast<std::uint32_t>(sizeof(SphereRow<Real>));
   const auto nobody = static_cast<std::uint32_t>(groups * kLanes);
-  lanes.rung.resize(lanes.first_rung[groups] + 1);  // one more, which is fetched ahead and not used
-  std::fill(std::begin(lanes.rung.back().row), std::end(lanes.rung.back().row), row_size * nobody);
+  lanes.rung.resize(lanes.first_rung[groups]);
   team.for_each_block(block_count(n), [&](std::size_t block) {
     for (std::size_t g = block * kBlockSize / kLanes; g < std::min(groups, (block + 1) * kBlockSize / kLanes); ++g) {
       for (std::size_t l = 0; l < kLanes; ++l) {
@@ -274,15 +278,16 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
     }
   });
   lanes.near_rung.resize(lanes.rung.size());
-  lanes.near_rung.back() = lanes.rung.back();
+  lanes.near_first.assign(groups, 0);
   lanes.near_count.assign(groups, 0);
+  lanes.frontier = (kReach[2] * n / s.bins[2] + 4 * kWindow) / kLanes;
   lanes.group = std::move(group);
   lanes.row.assign(nobody + 1, SphereRow<Real>{});
   lanes.row[nobody].radius = Real{kNobodysRadius};
 }
 
 template <class Real>
-NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p) {
+NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p, Listed which) {
   constexpr int far = 2;  // unwrapped fractions of neighbours differ by less than 2.5
   constexpr int across = 2 * far + 1;
   NeighbourList list;
@@ -297,8 +302,11 @@ NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p) {
   list.first.push_back(0);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t g = lane[i] / kLanes, l = lane[i] % kLanes;
-    for (std::size_t k = lanes.first_rung[g]; k < lanes.first_rung[g + 1]; ++k) {
-      const std::size_t t = lanes.rung[k].row[l] / sizeof(SphereRow<Real>);
+    const auto [first, last, rung] = which == Listed::all
+                                         ? std::tuple(lanes.first_rung[g], lanes.first_rung[g + 1], lanes.rung.data())
+                                         : std::tuple(lanes.near_first[g], lanes.near_first[g] + lanes.near_count[g], lanes.near_rung.data());
+    for (std::size_t k = first; k < last; ++k) {
+      const std::size_t t = rung[k].row[l] / sizeof(SphereRow<Real>);
       if (t >= lanes.spheres) break;
       const std::uint32_t j = lanes.group[t / kLanes].sphere[t % kLanes];
       list.j.push_back(j);
@@ -310,8 +318,8 @@ NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p) {
   return list;
 }
 
-template NeighbourList plain_list(const Lanes<float>&, const Packing&);
-template NeighbourList plain_list(const Lanes<double>&, const Packing&);
+template NeighbourList plain_list(const Lanes<float>&, const Packing&, Listed);
+template NeighbourList plain_list(const Lanes<double>&, const Packing&, Listed);
 template void arrange(Lanes<float>&, const std::array<double, 3>&, double, double, ThreadTeam&);
 template void arrange(Lanes<double>&, const std::array<double, 3>&, double, double, ThreadTeam&);
 

@@ -20,9 +20,11 @@ bool fits_lanes(const std::array<double, 3>& edge, double cutoff);
 template <class Real>
 void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin, double near_skin, ThreadTeam& team);
 
-/// The same list for sums over the contacts of `packing`, whose fractions may lie outside the cell. Spheres and
-/// neighbours in the order of the packing.
+enum class Listed { all, near };
+
+/// All of the list, or those picked last, for sums over the contacts of `packing`, whose fractions may lie outside the
+/// cell. Spheres and neighbours in the order of the packing.
 template <class Real>
-NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& packing);
+NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& packing, Listed which);
 
 }  // namespace grainlaw::dem

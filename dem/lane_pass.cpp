@@ -128,9 +128,11 @@ LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t
   const Edge<Tag<Real>, portable> ex(d, step.edge[0]), ey(d, step.edge[1]), ez(d, step.edge[2]);
   const Real* rows = reinterpret_cast<const Real*>(lanes.row.data());
   LaneTotals totals;
+  fetch_rungs_from(lanes, end);
   for (std::size_t g = begin; g < end; ++g) {
     SphereGroup<Real>& own = lanes.group[g];
-    const std::size_t first_rung = lanes.first_rung[g], last_rung = first_rung + lanes.near_count[g];
+    const std::size_t first_rung = lanes.near_first[g], last_rung = first_rung + lanes.near_count[g];
+    fetch_frontier(lanes, g);
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const auto x = hn::Load(di, own.x + o), y = hn::Load(di, own.y + o), z = hn::Load(di, own.z + o);
       const V r = hn::Load(d, own.radius + o);

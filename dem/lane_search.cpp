@@ -25,10 +25,12 @@ void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, double 
   const Edge<Tag<Real>, false> ex(d, edge[0]), ey(d, edge[1]), ez(d, edge[2]);
   const Real* rows = reinterpret_cast<const Real*>(lanes.row.data());
   const auto nobody = static_cast<std::uint32_t>((lanes.row.size() - 1) * sizeof(SphereRow<Real>));
+  std::size_t next = lanes.first_rung[begin];
   for (std::size_t g = begin; g < end; ++g) {
+    fetch_frontier(lanes, g);
     SphereGroup<Real>& own = lanes.group[g];
     std::uint32_t count[kLanes] = {};
-    Rung* picked = lanes.near_rung.data() + lanes.first_rung[g];
+    Rung* picked = lanes.near_rung.data() + next;
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const auto x = hn::Load(di, own.x + o), y = hn::Load(di, own.y + o), z = hn::Load(di, own.z + o);
       hn::Store(x, di, own.near_x + o);
@@ -54,7 +56,9 @@ void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, double 
     for (std::size_t l = 0; l < kLanes; ++l) {
       for (std::uint32_t k = count[l]; k < longest; ++k) picked[k].row[l] = nobody;
     }
+    lanes.near_first[g] = next;
     lanes.near_count[g] = longest;
+    next += longest;
   }
 }
 

@@ -26,6 +26,23 @@ using Tag = hn::CappedTag<Real, kLanes>;
 // A row is cut into pieces of 16 bytes. A vector of pieces of the rows k, k + m, k + 2m ... (m numbers to a piece)
 // becomes, transposed with its m - 1 siblings, m vectors of one field each, lanes in the order of rows.
 
+/// Asks for the rows that groups near g are about to read. Groups go through the cell in the order of rows and read up to
+/// a layer ahead; otherwise the first reader of each row would wait for memory.
+template <class Real>
+HWY_INLINE void fetch_frontier(const Lanes<Real>& lanes, std::size_t g) {
+  if (g + lanes.frontier >= lanes.group.size()) return;
+  const char* rows = reinterpret_cast<const char*>(lanes.row.data() + (g + lanes.frontier) * kLanes);
+  for (std::size_t byte = 0; byte < kLanes * sizeof(SphereRow<Real>); byte += 64) __builtin_prefetch(rows + byte, 0, 2);
+}
+
+/// Asks for the first near rungs of the block of groups from `begin` on: they do not follow on those of the block before.
+template <class Real>
+HWY_INLINE void fetch_rungs_from(const Lanes<Real>& lanes, std::size_t begin) {
+  if (begin >= lanes.group.size()) return;
+  const Rung* rung = lanes.near_rung.data() + lanes.near_first[begin];
+  for (std::size_t k = 0; k < kLanes; ++k) __builtin_prefetch(rung + k, 0, 2);
+}
+
 template <class D>
 struct Quartet {
   hn::Vec<D> a, b, c, d;

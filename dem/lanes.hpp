@@ -72,8 +72,10 @@ struct Lanes {
   std::vector<SphereRow<Real>> row;        ///< in the order of lanes; the last one is nobody's, for unused places
   std::vector<std::size_t> first_rung;     ///< of each group, and the end
   std::vector<Rung> rung;                  ///< the list
-  std::vector<Rung> near_rung;             ///< the near ones, from the same places on
+  std::vector<Rung> near_rung;             ///< the near ones, of the groups that were picked together without gaps
+  std::vector<std::size_t> near_first;     ///< of each group
   std::vector<std::uint32_t> near_count;   ///< rungs of them in each group
+  std::size_t frontier = 0;                ///< groups from one to the farthest ahead whose rows it reads, roughly
   Units unit;
 };
 

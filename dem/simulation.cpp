@@ -351,9 +351,9 @@ std::unique_ptr<ContactView> view_contacts(const Simulation& sim, const CellMoti
   const Packing& p = sim.state.packing;
   auto view = std::make_unique<ContactView>();
   if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) {
-    view->list = plain_list(*mixed, p);
+    view->list = plain_list(*mixed, p, Listed::near);
   } else if (const auto* full = std::get_if<Lanes<double>>(&sim.lanes)) {
-    view->list = plain_list(*full, p);
+    view->list = plain_list(*full, p, Listed::near);
   } else {
     view->list = sim.list;
   }

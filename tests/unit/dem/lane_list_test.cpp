@@ -74,7 +74,7 @@ TYPED_TEST(LaneList, D19EqualsBruteForce) {
         const Eigen::Vector3d edge = state.packing.H.diagonal();
         if (!fits_lanes({edge[0], edge[1], edge[2]}, 2 * r_max + skin)) continue;
         const std::set<Pair> listed =
-            pairs_of(plain_list(make_lanes<TypeParam>(state, 1e-8, skin, 0.1 * skin, team), state.packing));
+            pairs_of(plain_list(make_lanes<TypeParam>(state, 1e-8, skin, 0.1 * skin, team), state.packing, Listed::all));
         const std::set<Pair> within = brute_force(state.packing, skin * (1 - 1e-9)),
                              around = brute_force(state.packing, skin + 1e-5 * 2 * r_max);
         EXPECT_TRUE(std::includes(listed.begin(), listed.end(), within.begin(), within.end())) << "missed";
@@ -98,13 +98,8 @@ TYPED_TEST(LaneList, D19NearOnesAreAllThatAreNear) {
   LaneStep step;
   write_rows(lanes, step, 0, lanes.group.size());
   pick_near(lanes, {edge[0], edge[1], edge[2]}, near_skin / length, 0, lanes.group.size());
-  const std::set<Pair> all = pairs_of(plain_list(lanes, state.packing));
-  for (std::size_t g = 0; g < lanes.group.size(); ++g) {  // what lies behind the picked ones is not theirs
-    std::fill(lanes.near_rung.begin() + static_cast<std::ptrdiff_t>(lanes.first_rung[g] + lanes.near_count[g]),
-              lanes.near_rung.begin() + static_cast<std::ptrdiff_t>(lanes.first_rung[g + 1]), lanes.near_rung.back());
-  }
-  lanes.rung.swap(lanes.near_rung);
-  const std::set<Pair> near = pairs_of(plain_list(lanes, state.packing));
+  const std::set<Pair> all = pairs_of(plain_list(lanes, state.packing, Listed::all)),
+                       near = pairs_of(plain_list(lanes, state.packing, Listed::near));
   const std::set<Pair> within = brute_force(state.packing, near_skin * (1 - 1e-4)), around = brute_force(state.packing, near_skin * (1 + 1e-4));
   EXPECT_TRUE(std::includes(near.begin(), near.end(), within.begin(), within.end())) << "missed";
   EXPECT_TRUE(std::includes(around.begin(), around.end(), near.begin(), near.end())) << "invented";
