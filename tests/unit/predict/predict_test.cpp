@@ -18,7 +18,7 @@ using testing::path_from;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Model kModels[] = {Rung::reduced, Rung::evolution};
+constexpr Rung kModels[] = {Rung::reduced, Rung::evolution};
 
 LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();

@@ -25,7 +25,7 @@ using testing::figure;
 
 struct Errors {
   double force = 0, max_force = 0;  // of a sphere, rms and largest, over the mean contact force
-  double pressure = 0;              // relative
+  double pressure = 0;              // relative, with its sign
 };
 
 /// Forces of the lanes on a packing at rest, against the reference.
@@ -60,7 +60,7 @@ Errors force_errors(State state) {
     errors.max_force = std::max(errors.max_force, error);
   }
   errors.force = std::sqrt(errors.force);
-  errors.pressure = std::abs(sim.state.sums.box_power / (-1e-3 * expected.virial.trace()) - 1);
+  errors.pressure = sim.state.sums.box_power / (-1e-3 * expected.virial.trace()) - 1;
   return errors;
 }
 
@@ -84,8 +84,8 @@ TEST(PrecisionTable, ForcesAndPressure) {
     for (const std::uint64_t seed : {3U, 4U}) {
       const State state = scene::jammed({"Paper", 3}, 1000, nu, seed);
       const Errors mixed = force_errors<float>(state), full = force_errors<double>(state);
-      worst_mixed = {std::max(worst_mixed.force, mixed.force), std::max(worst_mixed.max_force, mixed.max_force), std::max(worst_mixed.pressure, mixed.pressure)};
-      worst_double = {0, std::max(worst_double.max_force, full.max_force), std::max(worst_double.pressure, full.pressure)};
+      worst_mixed = {std::max(worst_mixed.force, mixed.force), std::max(worst_mixed.max_force, mixed.max_force), std::max(worst_mixed.pressure, std::abs(mixed.pressure))};
+      worst_double = {0, std::max(worst_double.max_force, full.max_force), std::max(worst_double.pressure, std::abs(full.pressure))};
     }
     const std::string at = fmt::format("nu{:.2f}", nu);
     figure("precision.mixed.force." + at, worst_mixed.force, 1e-5);
@@ -97,6 +97,24 @@ TEST(PrecisionTable, ForcesAndPressure) {
                                      fmt::format("{:.1e}", worst_double.pressure)});
   }
   testing::print_table("precision", {"nu", "mixed: force, rms", "largest", "P*", "double: force, largest", "P*"}, rows);
+}
+
+// Where the pressure of a packing that is let out reaches zero, by its last two states.
+TEST(PrecisionTable, JammingDensity) {
+  State state = scene::jammed({"Paper", 3}, 1000, 0.70, 3);
+  std::vector<double> nu, exact, mixed;
+  for (const double to : {0.69, 0.68}) {
+    state.packing.H *= std::cbrt(volume_fraction(state.packing) / to);
+    relax(state, {}, {}, {});
+    round_radii(state.packing);
+    nu.push_back(volume_fraction(state.packing));
+    exact.push_back(observe(scene::start(state), scene::at_rest(state), Deviator<double>::Zero()).P_star);
+    mixed.push_back(exact.back() * (1 + force_errors<float>(state).pressure));
+  }
+  const auto nu_c = [&](const std::vector<double>& P) { return nu[1] - P[1] * (nu[0] - nu[1]) / (P[0] - P[1]); };
+  ASSERT_GT(nu_c(exact), 0.64);
+  ASSERT_LT(nu_c(exact), 0.68);
+  figure("precision.mixed.nu_c", std::abs(nu_c(mixed) - nu_c(exact)), 1e-5);
 }
 
 TEST(PrecisionTable, NearJamming) {

@@ -81,7 +81,7 @@ Outcome integrate(const LawParameters<double>& p, const LawParameters<double>& o
                   const StraightSegment& segment, const Tolerances& tolerances) {
   const Solution exact = solution_of_size(p.isotropic.P_star(segment.nu_start));
   const LawDirection direction = law_direction(segment.direction);
-  const SegmentLaw law(p, coupling, segment, 0);
+  const SegmentLaw law(p, Rung::evolution, coupling, segment, 0);
   const auto rate = [&](double e, const double* y, double* out) {
     law.rate(e, y, out);
     const LawState<double> source =
