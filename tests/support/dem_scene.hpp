@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dem/drive.hpp"
+#include "dem/lane_list.hpp"
 #include "dem/simulation.hpp"
 #include "model/path.hpp"
 
@@ -166,6 +167,13 @@ inline std::int64_t run_along(Simulation& sim, const Drive& drive) {
 /// Sum of the drag-free forces m a on each sphere [N]; right where background_viscosity is 0 or all velocities vanish.
 inline Eigen::Vector3d force_on(const Simulation& sim, std::size_t i) {
   return sim.state.packing.mass[i] * Eigen::Vector3d(sim.state.ax[i], sim.state.ay[i], sim.state.az[i]);
+}
+
+/// The whole list of a simulation whose state is synchronised, not only the near ones of it.
+inline NeighbourList list_of(const Simulation& sim) {
+  if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) return plain_list(*mixed, sim.state.packing, Listed::all);
+  if (const auto* full = std::get_if<Lanes<double>>(&sim.lanes)) return plain_list(*full, sim.state.packing, Listed::all);
+  return sim.list;
 }
 
 }  // namespace grainlaw::dem::scene

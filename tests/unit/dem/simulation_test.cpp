@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include "dem/lane_list.hpp"
 #include "model/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
@@ -131,18 +130,13 @@ TEST(StartSimulation, AContinuedRunHasTheListOfItsLastRebuild) {
   end.H(2, 2) *= 0.98;
   scene::step(whole, end, end);
   ASSERT_EQ(whole.rebuilds, 1u);
-  const auto list_of = [](const Simulation& sim) {
-    if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) return plain_list(*mixed, sim.state.packing, Listed::all);
-    if (const auto* full = std::get_if<Lanes<double>>(&sim.lanes)) return plain_list(*full, sim.state.packing, Listed::all);
-    return sim.list;
-  };
-  const NeighbourList list = list_of(whole), continued = list_of(start_simulation(whole.state, whole.options, end));
+  const NeighbourList list = scene::list_of(whole), continued = scene::list_of(start_simulation(whole.state, whole.options, end));
   EXPECT_EQ(continued.first, list.first);
   EXPECT_EQ(continued.j, list.j);
   EXPECT_EQ(continued.image, list.image);
   State forgetful = whole.state;
   forgetful.ref_x.clear();
-  EXPECT_NE(list_of(start_simulation(forgetful, options, end)).j, list.j) << "the cell changes the list";
+  EXPECT_NE(scene::list_of(start_simulation(forgetful, options, end)).j, list.j) << "the cell changes the list";
 }
 
 TEST(Advance, TimeAndStepsAreCounted) {
