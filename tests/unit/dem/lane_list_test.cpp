@@ -38,7 +38,8 @@ std::set<Pair> pairs_of(const NeighbourList& list) {
   for (std::size_t i = 0; i + 1 < list.first.size(); ++i) {
     for (std::size_t c = list.first[i]; c < list.first[i + 1]; ++c) {
       const Eigen::Vector3i n = list.offset[list.image[c]].cast<int>();
-      EXPECT_TRUE(pairs.emplace(i, list.j[c], n[0], n[1], n[2]).second) << "listed twice: " << i << " " << list.j[c] << " image " << n.transpose();
+      EXPECT_TRUE(pairs.emplace(i, list.j[c], n[0], n[1], n[2]).second)
+          << "listed twice: " << i << " " << list.j[c] << " image " << n.transpose();
     }
   }
   return pairs;
@@ -66,7 +67,8 @@ TYPED_TEST(LaneList, D19EqualsBruteForce) {
   ThreadTeam team(2);
   int lists = 0;
   for (const double w : {1.0, 3.0, 10.0}) {
-    for (const Eigen::Vector3d& shape : {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(4, 1, 1)}) {
+    for (const Eigen::Vector3d& shape :
+         {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(4, 1, 1)}) {
       for (const std::size_t n : {150U, 333U, 512U}) {
         const State state = random_box(n, w, shape, draw);
         const double r_max = *std::max_element(state.packing.radius.begin(), state.packing.radius.end());
@@ -116,6 +118,30 @@ TYPED_TEST(LaneList, AStateGoesThroughLanesUnchanged) {
   State twice = once;
   store_lanes(make_lanes<TypeParam>(twice, 1e-8, 0.3 * r, 0.05 * r, team), twice);
   EXPECT_EQ(scene::bits_of(twice), scene::bits_of(once));
+}
+
+// A sphere that has left the cell since the list was made is given where it is, not wrapped: exactly, as dyadic moves are
+// on the grid of both precisions.
+TYPED_TEST(LaneList, APositionBeyondTheCellIsNotWrapped) {
+  scene::Draw draw(22);
+  ThreadTeam team(1);
+  State state = random_box(100, 3, {1, 1, 1}, draw);
+  const double r = mean_radius(state.packing);
+  const auto through_lanes = [&] { store_lanes(make_lanes<TypeParam>(state, 1e-8, 0.3 * r, 0.05 * r, team), state); };
+  through_lanes();
+  Packing& p = state.packing;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p.sx[i] = state.ref_x[i] - 0.25;
+    p.sy[i] = state.ref_y[i] + 0.375;
+    p.sz[i] = state.ref_z[i] - 0.4375;
+  }
+  const Packing moved = p;
+  EXPECT_LT(*std::min_element(moved.sx.begin(), moved.sx.end()), 0);
+  EXPECT_GT(*std::max_element(moved.sy.begin(), moved.sy.end()), 1);
+  through_lanes();
+  EXPECT_EQ(p.sx, moved.sx);
+  EXPECT_EQ(p.sy, moved.sy);
+  EXPECT_EQ(p.sz, moved.sz);
 }
 
 TEST(FitsLanes, OneImageOnly) {

@@ -54,6 +54,20 @@ TEST(Calibrate, AgreesWithItselfAboutEveryParameter) {
   EXPECT_NEAR(c.eps_dev_max, 0.30, 1e-9);
 }
 
+// a1 = (2/3)(a2 - <sigma_dev>): with all other parameters it varies as (2/3) a2 does.
+TEST(Calibrate, TheTiedParameterVariesWithTheFreeOne) {
+  const Calibration c = calibrate(testing::synthetic_dataset(testing::synthetic_truth(), noisy()), {}, {});
+  const auto a1 = static_cast<Eigen::Index>(parameter_index("anisotropy.a1"));
+  const auto a2 = static_cast<Eigen::Index>(parameter_index("anisotropy.a2"));
+  EXPECT_GT(c.covariance(a2, a2), 0);
+  for (Eigen::Index k = 0; k < c.covariance.cols(); ++k) {
+    if (k == a1) continue;
+    const double expected = 2. / 3 * c.covariance(a2, k);
+    EXPECT_NEAR(c.covariance(a1, k), expected, 1e-12 * std::abs(expected))
+        << parameter_table()[static_cast<std::size_t>(k)].name;
+  }
+}
+
 TEST(Calibrate, FindsTheCurvesOfANoisyTruthWithinItsErrors) {
   const LawParameters<double> truth = testing::synthetic_truth();
   const Calibration c = calibrate(testing::synthetic_dataset(truth, noisy()), {}, {});

@@ -52,6 +52,18 @@ TEST(DensitySeries, SteadyPointIsTheMeanFromSteadyStrainOn) {
   }
 }
 
+// The steady state of the law is that of D2; a D3 test gives no point.
+TEST(DensitySeries, SteadyPointsComeFromD2Alone) {
+  std::vector<TestRecord> tests = records();
+  tests.push_back(testing::SyntheticDataset(testing::synthetic_truth(), {})
+                      .test("d3", 1, 0.70, {testing::synthetic_segment(Mode::D3, ExtentKind::eps_dev, 0.30)}));
+  const DataSet data = check_and_sort(tests);
+  EXPECT_EQ(data.pure_shear.size(), 5u);
+  const std::vector<DensitySeries> series = steady_series(data, {});
+  EXPECT_EQ(series.size(), 4u);
+  for (const DensitySeries& s : series) EXPECT_NE(s.test, "d3");
+}
+
 TEST(DensitySeries, TestsThatEndEarlyHaveNoSteadyPoint) {
   const std::vector<TestRecord> tests = records(0.10);
   EXPECT_TRUE(steady_series(check_and_sort(tests), {}).empty());
