@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# tests/mutants/run.sh [--list | --check | --only ID | --sample N]: do the tests notice faults in physics and law?
-# Sows each fault of tests/mutants/*.txt (--sample: N of them, evenly spaced) into a copy of HEAD in build/mutants/ and
-# runs the default suite up to its first failure, the room's own tests first. Prints "mutant ID caught|survived|invalid
-# by TEST" and at last "mutants.caught N of M"; exit code 0 if none is invalid and 95 % are caught. Finished ones are
-# kept in build/mutants/results.txt and not run again for the same sources. --check: do all apply and compile?
+# tests/mutants/run.sh [--list | --check | --only IDS | --sample N]: do the tests notice faults in physics and law?
+# Sows each fault of tests/mutants/*.txt (--sample: N of them, evenly spaced; --only: those that match a pattern like
+# 'dem.lanes_*') into a copy of HEAD in build/mutants/ and runs the default suite up to its first failure, the room's
+# own tests first. Prints "mutant ID caught|survived|invalid by TEST" and at last "mutants.caught N of M"; exit code 0
+# if none is invalid and 95 % are caught. Finished ones are kept in build/mutants/results.txt and not run again for the
+# same sources. --check: do all apply and compile?
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -13,14 +14,14 @@ case $#:${1:-} in
   0:) ;;
   1:--list | 1:--check) mode=${1#--} ;;
   2:--only | 2:--sample) mode=${1#--} argument=$2 ;;
-  *) sed -n 's/^# //; 2,6p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n 's/^# //; 2,7p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 work=$root/build/mutants
 tree=$work/tree            # a clone of its own, so that nothing here can touch the sources
 build=$tree/build/release
 results=$work/results.txt
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
-seconds=600                # a fault may turn a loop endless
+seconds=1800               # a fault may turn a loop endless; the machine may be busy
 memory_kB=8000000          # or a list
 die() { echo "mutants: $*" >&2; exit 1; }
 
@@ -48,8 +49,9 @@ select_mutants() {
   selected=()
   case $mode in
     only)
-      for i in "${!ids[@]}"; do [[ ${ids[i]} != "$argument" ]] || selected+=("$i"); done
-      ((${#selected[@]})) || die "no mutant is called $argument; see --list"
+      # shellcheck disable=SC2053  # a pattern
+      for i in "${!ids[@]}"; do [[ ${ids[i]} != $argument ]] || selected+=("$i"); done
+      ((${#selected[@]})) || die "no mutant matches $argument; see --list"
       ;;
     sample)
       [[ $argument =~ ^[1-9][0-9]*$ ]] || die "--sample needs a number, not '$argument'"
@@ -92,26 +94,28 @@ sow() { # index
 restore() { git -C "$tree" checkout -q -- "${files[$1]}"; }
 
 compile() { # log target...
-  cmake --build "$build" --parallel "$jobs" ${2:+--target "${@:2}"} >"$1" 2>&1
+  cmake --build "$build" --parallel "$jobs" ${2:+--target "${@:2}"} </dev/null >"$1" 2>&1
 }
 
 # --- The tests -----------------------------------------------------------------------------------
-tests_of() { # room -> its own test executables
+tests_of() { # room -> its own test executables, one with the precision it runs in
   local kind
   for kind in unit verification; do
     if compgen -G "$tree/tests/$kind/$1/*.cpp" >/dev/null; then echo "${kind}_$1"; fi
   done
+  [[ $1 != dem ]] || echo "verification_dem reference"
 }
 
 # Sets first_failure to the name of the first failing test of an executable; empty when all pass.
-run_executable() { # log name
+run_executable() { # log name [precision]
   local status=0
   first_failure=
-  (cd "$work/scratch" && ulimit -v "$memory_kB" && timeout "$seconds" "$build/bin/$2" --gtest_fail_fast) >"$1" 2>&1 || status=$?
+  (cd "$work/scratch" && ulimit -v "$memory_kB" &&
+    GRAINLAW_TEST_PRECISION=${3:-full} timeout "$seconds" "$build/bin/$2" --gtest_fail_fast) </dev/null >"$1" 2>&1 || status=$?
   ((status)) || return 0
   first_failure=$(sed -n 's/^\[  FAILED  \] \([^ ,]*\).*/\1/p' "$1" | head -n 1)
   [[ -n $first_failure ]] || first_failure="$(sed -n 's/^\[ RUN      \] //p' "$1" | tail -n 1) (ended with $status)"
-  first_failure=$2.$first_failure
+  first_failure=$2${3:+.$3}.$first_failure
 }
 
 run_suite() { # log
@@ -125,15 +129,13 @@ run_suite() { # log
 }
 
 judge() { # index; sets verdict and by
-  local room=${files[$1]%%/*} log=$work/logs/${ids[$1]} name
-  local -a own
-  mapfile -t own < <(tests_of "$room")
+  local room=${files[$1]%%/*} log=$work/logs/${ids[$1]} name precision
   verdict=invalid by=-
-  compile "$log.build" "${own[@]}" || return 0
-  for name in "${own[@]}"; do
-    run_executable "$log.$name" "$name"
+  while read -r name precision; do
+    compile "$log.build" "$name" || return 0
+    run_executable "$log.$name${precision:+.$precision}" "$name" "$precision"
     if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; return 0; fi
-  done
+  done < <(tests_of "$room")
   compile "$log.build" || return 0
   run_suite "$log.suite"
   if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; else verdict=survived by=-; fi
