@@ -3,6 +3,8 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -64,21 +66,30 @@ struct ThreadTeam::Crew {
     ++round;
     round.notify_all();
   }
+
+  void dismiss() {
+    quit = true;
+    start_round();
+    for (std::thread& thread : threads) {
+      if (thread.joinable()) thread.join();
+    }
+  }
 };
 
 ThreadTeam::ThreadTeam(int threads) : crew_(std::make_unique<Crew>()) {
   if (threads < 1) throw InvalidInput("threads: must be at least 1");
   crew_->threads.resize(static_cast<std::size_t>(threads - 1));
-  for (std::size_t i = 0; i < crew_->threads.size(); ++i) {
-    crew_->threads[i] = std::thread([crew = crew_.get(), i] { crew->worker(i + 1); });
+  try {
+    for (std::size_t i = 0; i < crew_->threads.size(); ++i) {
+      crew_->threads[i] = std::thread([crew = crew_.get(), i] { crew->worker(i + 1); });
+    }
+  } catch (const std::system_error&) {
+    crew_->dismiss();
+    throw Error("threads: the system does not start as many as " + std::to_string(threads) + "; give fewer");
   }
 }
 
-ThreadTeam::~ThreadTeam() {
-  crew_->quit = true;
-  crew_->start_round();
-  for (std::thread& thread : crew_->threads) thread.join();
-}
+ThreadTeam::~ThreadTeam() { crew_->dismiss(); }
 
 int ThreadTeam::threads() const { return static_cast<int>(crew_->threads.size()) + 1; }
 

@@ -9,7 +9,8 @@ namespace grainlaw::dem {
 
 class ThreadTeam {
  public:
-  explicit ThreadTeam(int threads);  ///< `threads` >= 1, the caller's thread included
+  /// `threads` >= 1, the caller's thread included. Throws Error when the system does not start as many.
+  explicit ThreadTeam(int threads);
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;

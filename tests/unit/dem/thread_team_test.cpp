@@ -1,8 +1,11 @@
 #include "dem/thread_team.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -57,6 +60,25 @@ INSTANTIATE_TEST_SUITE_P(Threads, ThreadTeamOf, ::testing::Values(1, 2, 3, 8));
 TEST(ThreadTeam, RefusesNoThreads) {
   EXPECT_THROW(ThreadTeam(0), InvalidInput);
   EXPECT_THROW(ThreadTeam(-4), InvalidInput);
+}
+
+// In a process of its own whose address space ends before the last stack.
+TEST(ThreadTeam, SaysWhenThreadsCannotBeStarted) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need the address space themselves";
+#endif
+  const auto start_too_many = [] {
+    const rlimit limit{256 << 20, 256 << 20};  // stacks take 8 MB each
+    setrlimit(RLIMIT_AS, &limit);
+    try {
+      const ThreadTeam team(200);
+    } catch (const Error& error) {
+      std::fputs(error.what(), stderr);
+      std::_Exit(std::string(error.what()).find("give fewer") == std::string::npos);
+    }
+    std::_Exit(2);
+  };
+  EXPECT_EXIT(start_too_many(), ::testing::ExitedWithCode(0), "threads: the system does not start as many as 200");
 }
 
 TEST(ThreadTeam, BlockCount) {
