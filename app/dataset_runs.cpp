@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "app/digest.hpp"
 #include "app/files/preparation_json.hpp"
 #include "app/files/series_csv.hpp"
 #include "app/job_list.hpp"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 
 std::string preparation_key(const PlannedTest& test) { return run_key(preparation_request(test.preparation)); }
 
-TestStart start_of(const PlannedTest& test) { return {test.preparation, test.rows, {}, "", false}; }
+TestStart start_of(const PlannedTest& test) { return {test.preparation, test.rows, {}, "", false, test.probes}; }
 
 std::string test_key(const PlannedTest& test) {
   return test.branch_of_preparation ? preparation_key(test) : run_key(test_request(start_of(test), test.path));
@@ -95,7 +96,7 @@ std::vector<PlannedTest> plan(const Spec& spec) {
       }
       for (const double nu : request.densities) {
         tests.push_back({record_name(request, nu, seed), request.role, path_of(request, nu, spec), preparation,
-                         preparation.rows, false});
+                         preparation.rows, false, request.probes});
       }
     }
   }
@@ -106,7 +107,7 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
                     const RunStore& store, Session& session, RunCounts& counts) {
   run_jobs(jobs_for(tests, store, session, counts), session.threads, session.progress, session.stop);
 
-  std::set<std::string> stale = series_listed(folder);
+  std::set<std::string> stale = series_listed(folder), stale_probes = stale;
   Dataset dataset;
   dataset.spec = spec;
   for (const PlannedTest& planned : tests) {
@@ -120,6 +121,12 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
     const fs::path file = folder / (planned.name + ".csv");
     dem::copy_durably(store.folder(test.run) / (series + ".csv"), file);
     test.record.rows = read_series(file, planned.path, test.record.packing);
+    if (planned.probes) {
+      const fs::path probes = make_subfolder(folder, kProbesFolder) / (planned.name + ".csv");
+      dem::copy_durably(store.folder(test.run) / "probes.csv", probes);
+      test.probes_sha256 = sha256_of_file(probes);
+      stale_probes.erase(planned.name);
+    }
     stale.erase(planned.name);
     const std::uint64_t seed = planned.preparation.packing.seed;
     if (std::find(dataset.seeds.begin(), dataset.seeds.end(), seed) == dataset.seeds.end())
@@ -130,6 +137,9 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
   write_dataset_index(folder, dataset);
   for (const std::string& name : stale) {
     if (is_safe_name(name)) fs::remove(folder / (name + ".csv"));
+  }
+  for (const std::string& name : stale_probes) {
+    if (is_safe_name(name)) fs::remove(folder / kProbesFolder / (name + ".csv"));
   }
   return dataset;
 }

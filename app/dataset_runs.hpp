@@ -2,6 +2,7 @@
 // From a spec to its data set: every packing prepared, every test run, every series in one folder.
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "app/files/dataset.hpp"
@@ -16,9 +17,10 @@ struct PlannedTest {
   std::string name;  ///< of the record
   Role role = Role::calibration;
   Path path;
-  dem::PreparationOptions preparation;  ///< of its packing
-  int rows = 200;                       ///< of each segment
-  bool branch_of_preparation = false;   ///< ISO: the series that the preparation itself leaves
+  dem::PreparationOptions preparation;             ///< of its packing
+  int rows = 200;                                  ///< of each segment
+  bool branch_of_preparation = false;              ///< ISO: the series that the preparation itself leaves
+  std::optional<ProbePlan> probes = std::nullopt;  ///< small-strain probes along the test
 };
 
 /// All tests of the spec on all seeds, in the order of the spec within each seed.

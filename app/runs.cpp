@@ -7,6 +7,7 @@
 #include "app/files/preparation_json.hpp"
 #include "app/files/series_csv.hpp"
 #include "app/files/spec_file.hpp"
+#include "app/path_probes.hpp"
 #include "app/preparation_folder.hpp"
 #include "app/provenance.hpp"
 #include "dem/state_file.hpp"
@@ -61,14 +62,15 @@ Json preparation_request(const dem::PreparationOptions& o) {
 
 Json test_request(const TestStart& start, const Path& path) {
   Json request{{"kind", "test"}, {"path", Json(path_to_json(path))}, {"rows", start.rows}};
+  if (start.probes) request["probes"] = Json(probes_to_json(*start.probes));
   if (!start.given) {
     request["packing"] = packing_identity(start.preparation);
     return request;
   }
   const Json all = preparation_to_json(start.preparation);
   request["given"] = {{"sha256", start.given_digest}, {"relax", start.relax}};
-  for (const char* key : {"time_step_fraction", "skin", "precision", "portable_bits", "strain_rate", "driving", "transport", "density",
-                          "stiffness", "contact_viscosity", "background_viscosity"}) {
+  for (const char* key : {"time_step_fraction", "skin", "precision", "portable_bits", "strain_rate", "driving",
+                          "transport", "density", "stiffness", "contact_viscosity", "background_viscosity"}) {
     request["given"][key] = all[key];
   }
   return request;
@@ -117,16 +119,28 @@ Json ensure_test(const RunStore& store, const TestStart& start, const Path& path
   options.rows = start.rows;
   const fs::path folder = policy.resume ? store.reopen(key) : store.begin(key);
   const CheckpointFiles checkpoints(folder, key, policy);
+  const auto segments = resolve(path);
+  std::optional<PathProbes> probes;
+  if (start.probes) probes.emplace(folder, *start.probes, segments, start.preparation.engine.threads, control);
   auto checkpoint = checkpoints.load();
+  if (checkpoint && probes && !probes->take_up()) {
+    if (policy.log) policy.log("starts anew: what was probed before the checkpoint is damaged");
+    checkpoint.reset();
+  }
   if (!checkpoint) store.begin(key);
   const double earlier = checkpoint ? checkpoint->seconds : 0;
-  const auto segments = resolve(path);
-  const dem::ElementTest test =
-      checkpoint ? dem::continue_element_test(std::move(*checkpoint), segments, options, control, {},
-                                              checkpoints.checkpointing())
-                 : dem::run_element_test(start_state(store, start, path, control), segments, options, control, {},
-                                         checkpoints.checkpointing());
+  const dem::StepObserver on_step = probes ? probes->observer() : dem::StepObserver{};
+  const dem::ElementTest test = checkpoint
+                                    ? dem::continue_element_test(std::move(*checkpoint), segments, options, control,
+                                                                 on_step, checkpoints.checkpointing())
+                                    : dem::run_element_test(start_state(store, start, path, control), segments, options,
+                                                            control, on_step, checkpoints.checkpointing());
   write_series(folder / "series.csv", test.rows);
+  std::vector<std::string> warnings = test.warnings;
+  if (probes) {
+    probes->finish(test.end);
+    warnings.insert(warnings.end(), probes->warnings().begin(), probes->warnings().end());
+  }
   dem::State end = test.end;
   end.digest = key;
   dem::write_state(folder / "end.state", end);
@@ -134,7 +148,7 @@ Json ensure_test(const RunStore& store, const TestStart& start, const Path& path
   store.finish(key, request,
                {{"kind", "test"},
                 {"packing", packing_to_json(end, width)},
-                {"warnings", test.warnings},
+                {"warnings", warnings},
                 {"cost", cost_to_json({test.steps, test.time_step, earlier + stopwatch.seconds()})},
                 {"provenance", provenance("element test", start.preparation.engine.threads, stopwatch)}});
   return store.find(key).value();

@@ -9,6 +9,7 @@
 
 #include "app/checkpoint_files.hpp"
 #include "app/files/dataset.hpp"
+#include "app/files/probe_json.hpp"
 #include "app/run_store.hpp"
 #include "dem/preparation.hpp"
 #include "model/run_control.hpp"
@@ -18,11 +19,12 @@ namespace grainlaw::app {
 
 /// Where an element test starts: a kept state of a preparation, or a given state.
 struct TestStart {
-  dem::PreparationOptions preparation;  ///< engine and driving of the test; and the packing unless `given`
-  int rows = 200;                       ///< rows of each segment of the test
-  std::optional<dem::State> given;      ///< of a table of spheres or a state file
-  std::string given_digest;             ///< SHA-256 of what `given` came from
-  bool relax = false;                   ///< minimise `given` before the test
+  dem::PreparationOptions preparation;             ///< engine and driving of the test; and the packing unless `given`
+  int rows = 200;                                  ///< rows of each segment of the test
+  std::optional<dem::State> given;                 ///< of a table of spheres or a state file
+  std::string given_digest;                        ///< SHA-256 of what `given` came from
+  bool relax = false;                              ///< minimise `given` before the test
+  std::optional<ProbePlan> probes = std::nullopt;  ///< small-strain probes along the test
 };
 
 /// What a run is a function of. The kept states and rows of a preparation do not change what others see of it.
@@ -34,7 +36,8 @@ Json test_request(const TestStart& start, const Path& path);
 Json ensure_preparation(const RunStore& store, const dem::PreparationOptions& options, const ResumePolicy& policy,
                         const RunControl& control);
 
-/// Likewise an element test; a preparation that it needs must be in the store. Files: series.csv, start.state, end.state.
+/// Likewise an element test; a preparation that it needs must be in the store. Files: series.csv,
+/// end.state, and probes.csv where the start asks for probes.
 Json ensure_test(const RunStore& store, const TestStart& start, const Path& path, const ResumePolicy& policy,
                  const RunControl& control);
 

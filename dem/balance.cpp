@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/run_watch.hpp"
 #include "dem/stiffness.hpp"
 
 namespace grainlaw::dem {
@@ -38,15 +37,15 @@ void displace(Packing& packing, const Eigen::Matrix3d& inverse, const Eigen::Mat
 }
 
 /// Newton's method from where the state is; the state stays at the least residual that was met.
-void newton(State& state, const BalanceOptions& options, RunWatch& watch, Balance& result) {
+void newton(State& state, const BalanceOptions& options, const RunControl& control, Balance& result) {
   const double reach = kReach * mean_radius(state.packing), k = state.material.stiffness;
   const std::vector<NetworkPair> pairs = pairs_within(state.packing, reach, options.threads);
   const Eigen::Matrix3d inverse = state.packing.H.inverse();
   Configuration now(state, pairs);
   double moved = 0;  // at most, by any sphere since the pairs were listed [m]
   for (int step = 0; step < kMaxSteps && now.residual() > options.aim; ++step) {
-    watch.tick(0, static_cast<double>(result.iterations));
-    const StiffnessSolution solution = solve_stiffness(now.contacts, k, now.forces.net, kForcing, kMaxIterations);
+    const StiffnessSolution solution =
+        solve_stiffness(now.contacts, k, now.forces.net, kForcing, kMaxIterations, control.stop);
     result.iterations += solution.iterations;
     moved += std::sqrt(solution.u.colwise().squaredNorm().maxCoeff());
     if (solution.end != SolveEnd::solved || !(moved < reach / 2)) break;
@@ -75,15 +74,14 @@ Balance balance(State& state, const BalanceOptions& options, const RunControl& c
     result.reached = true;
     return result;
   }
-  RunWatch watch(control, "equilibrium", "iterations");
-  newton(state, options, watch, result);
+  newton(state, options, control, result);
   double minimum = kFirstMinimum;
   for (int call = 0; call < kMinimisations && !(result.residual <= options.tolerance);
        ++call, minimum *= kNextMinimum) {
     EngineOptions engine;
     engine.threads = options.threads;
     result.passes += relax(state, engine, {minimum, options.max_passes}, control).passes;
-    newton(state, options, watch, result);
+    newton(state, options, control, result);
   }
   result.reached = result.residual <= options.tolerance;
   return result;

@@ -170,12 +170,13 @@ ElasticProbe probe_moduli(State state, const Deviator<double>& N, const ProbeOpt
   probe.contacts = rest.contacts.size();
   if (rest.contacts.empty()) return probe;
 
-  const LinearResponse response = linear_response(rest.state.packing, rest.contacts, state.material.stiffness);
+  const LinearResponse response =
+      linear_response(rest.state.packing, rest.contacts, state.material.stiffness, control.stop);
   probe.stable = response.end == SolveEnd::solved;
   probe.tangent = response.relaxed;
   const Vector6 by_e = response.relaxed.rightCols<5>() * N;
   probe.moduli = moduli_of(response.relaxed.col(0), by_e, N);
-  probe.K_affine = response.affine(0, 0);
+  probe.B_affine = response.affine(0, 0);
   for (const double h : options.steps) {
     probe.steps.push_back(step_with(rest, N, response, h, options.threads, control));
   }

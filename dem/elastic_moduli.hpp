@@ -49,7 +49,7 @@ struct ElasticProbe {
   bool stable = false;       ///< the stiffness is positive; otherwise the moduli are NaN
   Moduli moduli;             ///< linear response [Pa]
   Tangent tangent = Tangent::Constant(std::numeric_limits<double>::quiet_NaN());  ///< all of it [Pa]
-  double K_affine = 0;  ///< B if every sphere followed the strain, an upper bound of B [Pa]
+  double B_affine = Observation::undefined;  ///< B if every sphere followed the strain, an upper bound [Pa]
   std::vector<ElasticSteps> steps;
 };
 

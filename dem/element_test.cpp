@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dem/averages.hpp"
+#include "dem/path_row.hpp"
 #include "dem/run_watch.hpp"
 
 namespace grainlaw::dem {
@@ -48,22 +49,6 @@ Simulation restarted(Simulation sim, const CellMotion& motion) {
   State state = std::move(sim.state);
   for (auto* a : {&state.ax, &state.ay, &state.az}) a->clear();
   return start_simulation(std::move(state), sim.options, motion);
-}
-
-double shear_length(const StraightSegment& segment) { return segment.eps_dev_rate() * segment.length; }
-
-/// What an observation takes from the path instead of the packing.
-void fill_path(Observation& row, const StraightSegment& segment, int index, double e, double sheared_before) {
-  row.segment = index;
-  row.strain = segment.strain(e);
-  row.eps_vol = row.strain.tensor.trace();
-  row.eps_dev = deviatoric_norm(row.strain.tensor);
-  row.shear_path = sheared_before + segment.eps_dev_rate() * e;
-  // after a reversal to the start only rounding is left: it has no direction
-  if (row.eps_dev > 1e-12 * (row.shear_path + std::abs(row.eps_vol))) {
-    row.shape_strain = shape_factor(row.strain.tensor);
-    row.lode_strain = lode_angle(row.strain.tensor);
-  }
 }
 
 /// How far the energies of a run are out of balance, row by row. Early in shear W_box is negative before it grows, and

@@ -53,7 +53,8 @@ Eigen::Matrix3d strain_of(const Vector6& coordinates) {
   return -coordinates[0] / 3 * Eigen::Matrix3d::Identity() - tensor_of<double>(e);
 }
 
-LinearResponse linear_response(const Packing& packing, const std::vector<NetworkContact>& contacts, double stiffness) {
+LinearResponse linear_response(const Packing& packing, const std::vector<NetworkContact>& contacts, double stiffness,
+                               const std::stop_token& stop) {
   const auto spheres = static_cast<Eigen::Index>(packing.size());
   const double volume = packing.volume();
   LinearResponse response;
@@ -62,7 +63,7 @@ LinearResponse linear_response(const Packing& packing, const std::vector<Network
     const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, spheres);
     response.affine.col(a) = stress_coordinates(stress_change(contacts, stiffness, volume, g, none));
     StiffnessSolution solution = solve_stiffness(contacts, stiffness, affine_forces(contacts, stiffness, g, spheres),
-                                                 kTolerance, kMaxIterations);
+                                                 kTolerance, kMaxIterations, stop);
     response.relaxed.col(a) = stress_coordinates(stress_change(contacts, stiffness, volume, g, solution.u));
     response.iterations += solution.iterations;
     response.end = std::max(response.end, solution.end);

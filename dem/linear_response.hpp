@@ -31,7 +31,8 @@ struct LinearResponse {
   int iterations = 0;                 ///< of conjugate gradients, all six
 };
 
-/// `contacts` are those of `packing` at rest, all its spheres carrying load.
-LinearResponse linear_response(const Packing& packing, const std::vector<NetworkContact>& contacts, double stiffness);
+/// `contacts` are those of `packing` at rest, all its spheres carrying load. Throws Interrupted on request.
+LinearResponse linear_response(const Packing& packing, const std::vector<NetworkContact>& contacts, double stiffness,
+                               const std::stop_token& stop = {});
 
 }  // namespace grainlaw::dem

@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "model/error.hpp"
+
 namespace grainlaw::dem {
 namespace {
 
@@ -49,7 +51,7 @@ Displacements stiffness_times(const std::vector<NetworkContact>& contacts, doubl
 }
 
 StiffnessSolution solve_stiffness(const std::vector<NetworkContact>& contacts, double k, const Displacements& f,
-                                  double tolerance, int max_iterations) {
+                                  double tolerance, int max_iterations, const std::stop_token& stop) {
   StiffnessSolution solution;
   Displacements& u = solution.u = Displacements::Zero(3, f.cols());
   const double target = tolerance * f.norm();
@@ -58,6 +60,7 @@ StiffnessSolution solve_stiffness(const std::vector<NetworkContact>& contacts, d
   Displacements r = f, z = precondition(inverse, r), p = z;
   double rz = dot(r, z);
   while (r.norm() > target) {
+    if (stop.stop_requested()) throw Interrupted("equilibrium: interrupted on request");
     if (solution.iterations == max_iterations) {
       solution.end = SolveEnd::too_long;
       break;

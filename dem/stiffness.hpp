@@ -5,10 +5,10 @@
 // minimum of the energy K is positive but for the translations of the whole.
 
 #include <Eigen/Core>
+#include <stop_token>
 #include <vector>
 
 #include "dem/contact_network.hpp"
-#include "model/run_control.hpp"
 
 namespace grainlaw::dem {
 
@@ -29,8 +29,9 @@ struct StiffnessSolution {
 };
 
 /// Conjugate gradients, preconditioned by the 3 x 3 blocks of K, until the residual is `tolerance` times |f|. The columns of
-/// f sum to zero [N].
+/// f sum to zero [N]. Throws Interrupted on request.
 StiffnessSolution solve_stiffness(const std::vector<NetworkContact>& contacts, double stiffness,
-                                  const Eigen::Matrix3Xd& f, double tolerance, int max_iterations);
+                                  const Eigen::Matrix3Xd& f, double tolerance, int max_iterations,
+                                  const std::stop_token& stop = {});
 
 }  // namespace grainlaw::dem

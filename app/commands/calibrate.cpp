@@ -26,8 +26,12 @@ namespace fs = std::filesystem;
 Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (fs::equivalent(from, to, error)) return dataset;
-  for (const DatasetTest& test : dataset.tests)
-    dem::copy_durably(from / (test.record.name + ".csv"), to / (test.record.name + ".csv"));
+  for (const DatasetTest& test : dataset.tests) {
+    const std::string file = test.record.name + ".csv";
+    dem::copy_durably(from / file, to / file);
+    if (!test.probes_sha256.empty())
+      dem::copy_durably(from / kProbesFolder / file, make_subfolder(to, kProbesFolder) / file);
+  }
   dem::copy_durably(from / "dataset.json", to / "dataset.json");
   return read_dataset(to);
 }

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 TestStart start_of(const TestFile& test) {
-  return {test.preparation, test.preparation.rows, test.given, test.given_digest, test.relax};
+  return {test.preparation, test.preparation.rows, test.given, test.given_digest, test.relax, test.probes};
 }
 
 /// The jobs of the file: the preparation unless the packing is given, then the test unless there is none.
@@ -46,14 +46,14 @@ void run(const TestFile& test, const RunStore& store, Session& session) {
     const double particles = test.given ? static_cast<double>(test.given->packing.size())
                                         : static_cast<double>(test.preparation.packing.particles);
     const bool done = store.find(run_key(test_request(start_of(test), test.path))).has_value();
-    jobs.push_back(
-        {"element test", done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
-         jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
-         [&, policy = session.policy("element test")](int threads, const RunControl& control) {
-           TestStart start = start_of(test);
-           start.preparation.engine.threads = threads;
-           ensure_test(store, start, test.path, policy, control);
-         }});
+    jobs.push_back({"element test",
+                    done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
+                    jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
+                    [&, policy = session.policy("element test")](int threads, const RunControl& control) {
+                      TestStart start = start_of(test);
+                      start.preparation.engine.threads = threads;
+                      ensure_test(store, start, test.path, policy, control);
+                    }});
   }
   run_jobs(jobs, session.threads, session.progress, session.stop);
 }
@@ -86,7 +86,7 @@ OrderedJson reasons_of(const OrderedJson& values) {
   OrderedJson reasons = OrderedJson::object();
   for (const auto& value : values.items()) {
     if (!value.value().is_null()) continue;
-    reasons[value.key()] = value.key() == "C_star" ? "no sphere has four contacts"
+    reasons[value.key()] = value.key() == "C_star"  ? "no sphere has four contacts"
                            : value.key() == "s_dev" ? "the pressure is not positive"
                                                     : "it is not defined without spheres in contact";
   }

@@ -26,11 +26,13 @@ OrderedJson packing_to_json(const PackingInfo& packing) {
 
 /// What the digest of a data set covers of a test.
 OrderedJson identity(const DatasetTest& test) {
-  return {{"name", test.record.name},
-          {"role", to_string(test.record.role)},
-          {"path", path_to_json(test.record.path)},
-          {"packing", packing_to_json(test.record.packing)},
-          {"sha256", test.sha256}};
+  OrderedJson identity{{"name", test.record.name},
+                       {"role", to_string(test.record.role)},
+                       {"path", path_to_json(test.record.path)},
+                       {"packing", packing_to_json(test.record.packing)},
+                       {"sha256", test.sha256}};
+  if (!test.probes_sha256.empty()) identity["probes_sha256"] = test.probes_sha256;
+  return identity;
 }
 
 std::string digest_of(const Dataset& dataset) {
@@ -69,6 +71,12 @@ DatasetTest read_test(const Json& object, const fs::path& folder, const std::str
         fmt::format("{}: is not the file that {} was written with (SHA-256 differs); restore it, or remove {}.sha256 "
                     "and digest from {} to accept it",
                     file.string(), index, place, index));
+  }
+  test.probes_sha256 = object.value("probes_sha256", "");
+  const fs::path probes = folder / kProbesFolder / (test.record.name + ".csv");
+  if (!test.probes_sha256.empty() && sha256_of_file(probes) != test.probes_sha256) {
+    throw InvalidInput(fmt::format("{}: is not the file that {} was written with (SHA-256 differs); restore it",
+                                   probes.string(), index));
   }
   test.run = object.value("run", "");
   if (object.contains("cost")) {

@@ -1,6 +1,6 @@
 #pragma once
 // A data set on disk: FOLDER/dataset.json (spec, seeds, versions, digests, one entry for each test) and one
-// FOLDER/NAME.csv for each test.
+// FOLDER/NAME.csv for each test; FOLDER/probes/NAME.csv for those that were probed on their way.
 
 #include <cstdint>
 #include <filesystem>
@@ -22,10 +22,13 @@ struct RunCost {
 struct DatasetTest {
   TestRecord record;
   std::string sha256;                 ///< of the CSV file
+  std::string probes_sha256;          ///< of probes/NAME.csv; empty without probes
   std::string run;                    ///< key of the run that made it; empty when unknown
   RunCost cost;                       ///< zero when unknown
   std::vector<std::string> warnings;  ///< of the run
 };
+
+inline constexpr const char* kProbesFolder = "probes";  ///< beside dataset.json
 
 struct Dataset {
   std::vector<DatasetTest> tests;

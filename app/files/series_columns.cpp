@@ -3,45 +3,6 @@
 namespace grainlaw::app {
 namespace {
 
-template <class Row>
-using Columns = std::vector<Column<Row>>;
-
-// Column<Row> wants plain functions; the template argument carries the member.
-template <auto member, class Row>
-double get_member(const Row& row) {
-  return static_cast<double>(row.*member);
-}
-template <auto member, class Row>
-void set_member(Row& row, double value) {
-  row.*member = static_cast<std::remove_reference_t<decltype(row.*member)>>(value);
-}
-
-template <auto member, class Row>
-void add(Columns<Row>& columns, const char* name, const char* unit, const char* symbol, const char* meaning,
-         bool required = false) {
-  columns.push_back({name, unit, symbol, meaning, &get_member<member, Row>, &set_member<member, Row>, required});
-}
-
-template <auto member, std::size_t k, class Row>
-double get_component(const Row& row) {
-  return (row.*member).tensor(kComponentIndex[k][0], kComponentIndex[k][1]);
-}
-template <auto member, std::size_t k, class Row>
-void set_component(Row& row, double value) {
-  (row.*member).tensor(kComponentIndex[k][0], kComponentIndex[k][1]) = value;
-  (row.*member).tensor(kComponentIndex[k][1], kComponentIndex[k][0]) = value;
-}
-
-template <auto member, std::size_t k = 0, class Row>
-void add_tensor(Columns<Row>& columns, const std::string& name, const std::string& unit, const std::string& symbol,
-                const std::string& meaning, bool required = false) {
-  const std::string suffix = kComponentName[k];
-  columns.push_back({name + "_" + suffix, unit, symbol + "_" + suffix, meaning + ", component " + suffix,
-                     &get_component<member, k, Row>, &set_component<member, k, Row>, required});
-  if constexpr (k + 1 < kComponentName.size())
-    add_tensor<member, k + 1, Row>(columns, name, unit, symbol, meaning, required);
-}
-
 /// Components of a deviator of the predicted state; writing keeps the tensor, reading goes back to coordinates.
 template <Deviator<double> LawState<double>::*member, std::size_t k>
 double get_deviator(const predict::PredictedRow& row) {

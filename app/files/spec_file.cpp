@@ -43,7 +43,7 @@ TestRequest test_from_json(const Json& object, const std::vector<double>& densit
   }
   if (test.mode.empty()) test.segments = segments_from_json(object["segments"], name, place + ".", true);
   if (test.mode == "ISO") {
-    for (const char* key : {"density", "strain"}) {
+    for (const char* key : {"density", "strain", "probes"}) {
       if (object.contains(key))
         refuse(fmt::format(".{}: ISO is the preparation's own branch and takes none; remove it or give segments", key));
     }
@@ -56,6 +56,7 @@ TestRequest test_from_json(const Json& object, const std::vector<double>& densit
   if (object.contains("strain") && test.mode.empty())
     refuse(".strain: belongs to a mode; write it into the segments' extents");
   test.strain = object.value("strain", default_strain(test.mode));
+  if (object.contains("probes")) test.probes = probes_from_json(object["probes"]);
   test.name = object.value("name", default_name(test));
   if (!is_safe_name(test.name))
     refuse(fmt::format(".name: '{}' is no name; use letters, digits, '.', '-', '_'", one_line(test.name, 60)));
@@ -123,6 +124,7 @@ OrderedJson test_to_json(const TestRequest& test) {
   if (test.strain > 0) object["strain"] = test.strain;
   if (test.mode.empty()) object["segments"] = segments_to_json(test.segments);
   object["role"] = to_string(test.role);
+  if (test.probes) object["probes"] = probes_to_json(*test.probes);
   return object;
 }
 

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/files/json_document.hpp"
+#include "app/files/probe_json.hpp"
 #include "dem/preparation.hpp"
 #include "model/parameters.hpp"
 #include "model/test_record.hpp"
@@ -23,6 +25,7 @@ struct TestRequest {
   double strain = 0;                  ///< deviatoric strain to reach; 0: UNI up to nu_max, otherwise unused [-]
   std::vector<PathSegment> segments;  ///< when `mode` is empty
   Role role = Role::calibration;
+  std::optional<ProbePlan> probes = std::nullopt;  ///< small-strain probes along the test; none in ISO
 };
 
 struct Spec {

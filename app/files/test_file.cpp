@@ -42,6 +42,9 @@ Start start_from(const Json& document, const std::string& name) {
   };
   only_with("cell", Start::spheres, "spheres");
   only_with("keep", Start::preparation, "a preparation without segments");
+  if (document.contains("probes") && start == Start::preparation) {
+    throw InvalidInput(fmt::format("{}: probes: belong to a test; give initial, spheres or state", name));
+  }
   if (start == Start::spheres && !document.contains("cell")) {
     throw InvalidInput(fmt::format("{}: misses the key 'cell'; give three rows of three numbers [m]", name));
   }
@@ -64,6 +67,7 @@ TestFile read_test(const std::filesystem::path& file) {
   read_preparation(document, preparation);
   preparation.packing.seed = document.value("seed", preparation.packing.seed);
   test.relax = document.value("relax", false);
+  if (document.contains("probes")) test.probes = probes_from_json(document["probes"]);
   if (test.start == Start::kept) {
     (branch_from_json(document["initial"]) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
         .push_back(document["initial"]["nu"].get<double>());

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "app/files/probe_json.hpp"
 #include "dem/preparation.hpp"
 #include "model/path.hpp"
 
@@ -20,6 +21,7 @@ struct TestFile {
   std::string given_digest;             ///< SHA-256 of what `given` was read from, cell included
   bool relax = false;                   ///< minimise `given` before the test
   Path path;                            ///< nu: of the kept state, or of `given`
+  std::optional<ProbePlan> probes = std::nullopt;  ///< small-strain probes along the path
 };
 
 /// Reads the file and those that it names (relative to its folder). Throws InvalidInput naming file, key or row.

@@ -15,6 +15,18 @@ for file in series.csv end.state end.csv simulation.json; do [[ -s path/$file ]]
 (( $(wc -l <path/series.csv) == 42 )) || fail "rows"
 cmp result.json path/simulation.json || fail "--json is not the summary on disk"
 
+# small-strain probes on the way: at eps_dev 0, 0.01, 0.02 and at 0.03, in the compression; the run is the same
+jq '.probes = {every: 0.01, step: [1e-7, 1e-6]}' path.json >probed.json
+"$grainlaw" simulate probed.json -o probed --json --quiet >result.json
+cmp path/series.csv probed/series.csv || fail "probes disturbed the run"
+(( $(wc -l <probed/probes.csv) == 9 )) || fail "$(cat probed/probes.csv)"
+head -1 probed/probes.csv | grep -q ',B_star,DG_star,A1_star,A2_star,' || fail "$(head -1 probed/probes.csv)"
+jq -e '.files | contains(["probes.csv"])' result.json >/dev/null || fail "$(jq .files result.json)"
+code=0
+jq 'del(.initial, .segments)' probed.json >nowhere.json
+"$grainlaw" simulate nowhere.json -o nowhere 2>err || code=$?
+[[ $code == 2 && ! -e nowhere ]] && grep -q 'probes: belong to a test' err || fail "probes of a preparation: $(cat err)"
+
 # on from the state where the path ended, and from its table of spheres in the same cell
 echo '{"state": "path/end.state", "strain_rate": 5000, "rows": 5, "segments": [{"mode": "UNI", "extent": {"eps_dev": 0.002}}]}' >on.json
 "$grainlaw" simulate on.json -o on --quiet >text

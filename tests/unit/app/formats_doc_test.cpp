@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "app/exit_code.hpp"
+#include "app/files/probe_columns.hpp"
 #include "app/files/schema.hpp"
 #include "app/files/series_columns.hpp"
 #include "app/files/spec_file.hpp"
@@ -64,6 +65,13 @@ std::string column_table(const std::vector<Column<Row>>& columns) {
 TEST(FormatsDocument, ListsTheColumnsOfTests) { expect_section("series columns", column_table(observation_columns())); }
 TEST(FormatsDocument, ListsTheColumnsOfPredictions) {
   expect_section("prediction columns", column_table(prediction_columns()));
+}
+
+TEST(FormatsDocument, ListsTheColumnsOfProbes) {
+  std::string table = "| column | symbol | meaning |\n|---|---|---|\n";
+  for (const auto& c : probe_columns())
+    table += fmt::format("| `{}` | {} | {} |\n", c.title(), cell(c.symbol), cell(c.meaning));
+  expect_section("probe columns", table);
 }
 
 std::string range(const Json& s) {

@@ -290,6 +290,43 @@ TEST_F(Runs, BecomeADataSet) {
   EXPECT_EQ(read_dataset(folder_ / "dataset").tests.size(), 2u);
 }
 
+TEST_F(Runs, ProbesAreKeptBesideTheSeries) {
+  const auto with_probes = [](const std::string& probes) {
+    const std::string name = "s.json";
+    return spec_from_json(
+        parse_json(
+            R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70, "seeds": [1],
+      "tests": [{"mode": "D2", "strain": 0.02, "role": "calibration")" +
+                probes + "}]}",
+            name, JsonSource::user),
+        name);
+  };
+  const Spec spec = with_probes(R"(, "probes": {"every": 0.01})");
+  ProgressPrinter quiet(stderr, true);
+  Session session{"test", 1, false, {}, quiet, {}};
+  const RunStore store(folder_, "runs");
+  const fs::path folder = folder_ / "dataset", probes = folder / kProbesFolder / "D2-0.74-s1.csv";
+  fs::create_directory(folder);
+  RunCounts counts;
+  const Dataset made = run_planned(plan(spec), Json(spec_to_json(spec)), folder, store, session, counts);
+  EXPECT_EQ(made.tests[0].probes_sha256, sha256_of_file(probes));
+  const Dataset read = read_dataset(folder);
+  EXPECT_EQ(read.tests[0].probes_sha256, made.tests[0].probes_sha256);
+  EXPECT_EQ(spec_to_json(spec_from_json(read.spec, "d.json")), spec_to_json(spec));
+
+  const std::string bytes = content(probes);
+  std::ofstream(probes, std::ios::binary) << bytes << "1";
+  EXPECT_NE(refusal([&] { read_dataset(folder); }).find("probes/D2-0.74-s1.csv: is not the file"), std::string::npos);
+
+  // without probes: another run, the same series, and no stale probes
+  const Spec plain = with_probes("");
+  const Dataset without = run_planned(plan(plain), Json(spec_to_json(plain)), folder, store, session, counts);
+  EXPECT_NE(without.tests[0].run, made.tests[0].run);
+  EXPECT_EQ(without.tests[0].sha256, made.tests[0].sha256);
+  EXPECT_NE(without.digest, made.digest);
+  EXPECT_FALSE(fs::exists(probes));
+}
+
 TEST_F(Runs, OfPredictionsUseNewPackings) {
   const Spec spec = tiny_spec();
   PathFile path{d2(0.75), {}, {}};

@@ -28,6 +28,28 @@ TEST(SpecFile, FillsInTheDocumentedDefaults) {
   EXPECT_TRUE(s.preparation.keep_loading.empty());
 }
 
+TEST(SpecFile, TestsMayAskForProbes) {
+  const Spec s = spec(R"({"tests": [{"mode": "D2", "role": "calibration", "probes": {"every": 0.05}},
+    {"mode": "D3", "role": "validation", "probes": {"every": 0.1, "step": [1e-7, 1e-5]}}, {"mode": "UNI", "role": "validation"}]})");
+  EXPECT_EQ(s.tests[0].probes->every, 0.05);
+  EXPECT_EQ(s.tests[0].probes->steps, std::vector<double>{1e-6});
+  EXPECT_EQ(s.tests[1].probes->steps, (std::vector<double>{1e-7, 1e-5}));
+  EXPECT_FALSE(s.tests[2].probes);
+  EXPECT_EQ(spec_to_json(spec(spec_to_json(s).dump())), spec_to_json(s));
+  EXPECT_FALSE(spec_to_json(s)["tests"][2].contains("probes"));
+
+  const auto probes = [](const std::string& object) {
+    return refusal_of(R"({"tests": [{"mode": "D2", "role": "calibration", "probes": )" + object + "}]}");
+  };
+  EXPECT_NE(probes("{}").find("tests[0].probes"), std::string::npos);
+  EXPECT_NE(probes(R"({"every": 0})").find("tests[0].probes.every"), std::string::npos);
+  EXPECT_NE(probes(R"({"every": 0.1, "step": 0.5})").find("tests[0].probes.step"), std::string::npos);
+  EXPECT_NE(probes(R"({"every": 0.1, "step": []})").find("tests[0].probes.step"), std::string::npos);
+  EXPECT_NE(refusal_of(R"({"tests": [{"mode": "ISO", "role": "calibration", "probes": {"every": 0.05}}]})")
+                .find("tests[0].probes: ISO is the preparation's own branch"),
+            std::string::npos);
+}
+
 TEST(SpecFile, ReadsEveryKey) {
   const Spec s = spec(
       R"({"particles": 64, "seeds": [5], "size_width": 2, "mean_radius": 2e-3, "density": 1000, "stiffness": 1e7, "contact_viscosity": 0.5,

@@ -53,7 +53,7 @@ TEST(ElasticModuli, CouplingsFollowOneAnother) {
   const double P = probe.state.stress.tensor.trace() / 3, sigma_par = probe.state.s_par * P;
   EXPECT_GT(std::abs(sigma_par), 1e-3 * P);
   EXPECT_NEAR(probe.moduli.A1, 2.0 / 3 * (probe.moduli.A2 - sigma_par), 1e-7 * probe.moduli.B);
-  EXPECT_LT(probe.moduli.B, probe.K_affine);
+  EXPECT_LT(probe.moduli.B, probe.B_affine);
 }
 
 TEST(ElasticModuli, LargeStepsAreSeenToChangeContactsAndToRearrange) {
