@@ -22,10 +22,10 @@ struct RunCost {
 struct DatasetTest {
   TestRecord record;
   std::string sha256;                 ///< of the CSV file
-  std::string probes_sha256;          ///< of probes/NAME.csv; empty without probes
   std::string run;                    ///< key of the run that made it; empty when unknown
   RunCost cost;                       ///< zero when unknown
   std::vector<std::string> warnings;  ///< of the run
+  std::string probes_sha256 = {};     ///< of probes/NAME.csv; empty without probes
 };
 
 inline constexpr const char* kProbesFolder = "probes";  ///< beside dataset.json
