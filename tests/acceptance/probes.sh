@@ -44,7 +44,8 @@ while read -r name; do
     { h = $at["step"]; B = $at["B_star"]; DG = $at["DG_star"]; A1 = $at["A1_star"]; A2 = $at["A2_star"]; P = $at["P_star"]
       s = $at["s_par"]; F = $at["F_par"]; e = $at["eps_dev"]; off = $at["DG_step_star"] / DG - 1
       n[h]++; changed[h] += $at["contacts_closed"] + $at["contacts_opened"]; moved[h] += $at["rearranged"] > 0
-      same[h] += $at["contacts_closed"] + $at["contacts_opened"] == 0; off2[h] += off * off }
+      if (!$at["rearranged"]) { kept[h]++; off2[h] += off * off }
+      if ($at["contacts_closed"] + $at["contacts_opened"] == 0) { same[h]++; same2[h] += off * off } }
     B == "" || $at["relaxed"] != 1 { say("unusable", 1); next }
     h != 1e-6 { next }
     { d = A1 - 2 / 3 * (A2 - s * P); if (d < 0) d = -d; if (d / B > identity) identity = d / B; places++ }
@@ -57,7 +58,9 @@ while read -r name; do
           say("A1_over_F", F1 / FF); say("A2_over_F", F2 / FF); say("A1_over_BF", B1 / BB); say("A2_over_BF", B2 / BB)
           say("identity", identity); say("probes", places)
           for (h in n) { say("unchanged_" h, same[h] / n[h]); say("contacts_changed_" h, changed[h] / n[h])
-                         say("rearranged_" h, moved[h] / n[h]); say("DG_off_" h, sqrt(off2[h] / n[h])) } }' "$out/$name/probes.csv"
+                         say("rearranged_" h, moved[h] / n[h])
+                         if (same[h]) say("DG_off_unchanged_" h, sqrt(same2[h] / same[h]))
+                         if (kept[h]) say("DG_off_" h, sqrt(off2[h] / kept[h])) } }' "$out/$name/probes.csv"
 done <"$out/tests.txt" >"$out/values.txt"
 
 # --- Means over packings ------------------------------------------------------------------------------------------------------
@@ -76,15 +79,15 @@ awk '
     }
   }' "$out/values.txt" | tee "$out/figures.txt"
 
-table() { # row-keys column-keys, each "key:title"; a figure is ROW.COLUMN
-  awk -v rows="$1" -v columns="$2" '
+table() { # row-keys column-keys, each "key:title", "mean" without intervals; a figure is ROW.COLUMN
+  awk -v rows="$1" -v columns="$2" -v mean="${3:-}" '
     { value[$1] = $2 }
     END { nr = split(rows, row, " "); nc = split(columns, column, " "); line = "| |"; rule = "|---|"
       for (c = 1; c <= nc; c++) { split(column[c], part, ":"); key[c] = part[1]; line = line " " part[2] " |"; rule = rule "---|" }
       print line; print rule
       for (r = 1; r <= nr; r++) { line = "| " row[r] " |"
         for (c = 1; c <= nc; c++) { name = row[r] "." key[c]
-          line = line " " (name in value ? sprintf("%.3g ± %.1g", value[name], value[name ".half_interval"]) : "") " |" }
+          line = line " " (!(name in value) ? "" : mean ? sprintf("%.2g", value[name]) : sprintf("%.3g ± %.2g", value[name], value[name ".half_interval"])) " |" }
         print line } }' "$out/figures.txt"
   echo
 }
@@ -94,6 +97,7 @@ table() { # row-keys column-keys, each "key:title"; a figure is ROW.COLUMN
   table "${densities[*]} all" "A1_over_F:A1*/F A2_over_F:A2*/F A1_over_BF:A1/(BF) A2_over_BF:A2/(BF)"
   for h in 1e-07 1e-06 1e-05 0.0001; do
     echo "h = $h"
-    table "${densities[*]}" "unchanged_$h:contacts_unchanged contacts_changed_$h:contacts_changed rearranged_$h:rearranged DG_off_$h:2G_off"
+    table "${densities[*]}" "unchanged_$h:probes_unchanged contacts_changed_$h:contacts_changed rearranged_$h:probes_rearranged
+      DG_off_unchanged_$h:2G_off,_contacts_unchanged DG_off_$h:2G_off,_not_rearranged" mean
   done
 } >"$out/table.md"

@@ -61,12 +61,17 @@ class PathProbesTest : public testing::TemporaryFolder {
 };
 
 TEST_F(PathProbesTest, DoNotDisturbTheRun) {
+  dem::scene::Draw draw(3);
+  start_.given =
+      dem::scene::random_state(700, 3, 0.74, dem::scene::cubic(1), draw);  // wide enough for the vector engine
+  start_.given_digest = "of the wide scene";
+  const Path path{0.74, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.004}}};
   for (const dem::Precision precision : {dem::Precision::mixed, dem::Precision::full, dem::Precision::reference}) {
     start_.preparation.engine.precision = precision;
-    const fs::path without = run(start_, shear_then_compress()), with = run(probed(), shear_then_compress());
+    const fs::path without = run(start_, path), with = run(probed({0.002, {1e-6}}), path);
     EXPECT_NE(without, with);
     EXPECT_FALSE(fs::exists(without / "probes.csv"));
-    EXPECT_TRUE(fs::exists(with / "probes.csv"));
+    EXPECT_EQ(column(with, "B_star").size(), 3u);
     EXPECT_EQ(content(without / "series.csv"), content(with / "series.csv"));
     dem::State a = dem::read_state(without / "end.state"), b = dem::read_state(with / "end.state");
     a.digest = b.digest;
