@@ -10,6 +10,7 @@
 #include "fit/density_fit.hpp"
 #include "fit/density_law_fit.hpp"
 #include "fit/evolution_fit.hpp"
+#include "fit/memory_fit.hpp"
 #include "fit/outliers.hpp"
 #include "fit/shear_fit.hpp"
 
@@ -118,6 +119,20 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
   }
 }
 
+void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
+                     const CalibrationOptions& options, const RunControl& control) {
+  calibration.estimates[parameter_index("memory.m")] = {calibration.parameters.memory.m, kNoError, Status::fixed,
+                                                        "by docs/decisions/0004-memory-law.md"};
+  for (const char* group :
+       {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {
+    if (has_values(calibration, group)) continue;
+    record(calibration,
+           no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state"));
+    return;
+  }
+  record(calibration, fit_memory(trajectories, calibration.parameters, options, control));
+}
+
 void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibration) {
   calibration.nu_min = 1;
   for (const Trajectory& t : trajectories) {
@@ -152,6 +167,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   record(calibration,
          fit_evolution(trajectories, calibration.parameters, unseen_laws(calibration.shear), options, control));
   set_anisotropy(trajectories, calibration, options);
+  fit_memory_rung(trajectories, calibration, options, control);
   set_ranges(trajectories, calibration);
   calibration.converged = std::all_of(calibration.stages.begin(), calibration.stages.end(),
                                       [](const Stage& stage) { return stage.converged; });

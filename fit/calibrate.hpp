@@ -4,6 +4,7 @@
 //   2 shear: Eqs. (17), (18) per constant-volume test, windows of equations.md 0
 //   3 Eq. (20) over density for s_max, beta_s, F_max, beta_F
 //   4 evolution: Eq. (16) on all calibration trajectories at once, started from the staged values, exact derivatives
+//   5 memory: what the memory rung adds, on the same trajectories, with the laws of the stages before
 // Validation tests are refused here, not filtered silently.
 
 #include <Eigen/Core>

@@ -47,7 +47,7 @@ struct TrajectoryMisfit {
     const auto field = fields(p);
     for (std::size_t k = 0; k < index.size(); ++k) *field[index[k]] = x[k];
     const std::size_t rows = trajectory.rows.size(), axes = trajectory.axes.size();
-    return integrate<T>(trajectory, p, coupling, max_step, [&](std::size_t i, const LawState<T>& y) {
+    return integrate<T>(trajectory, p, Rung::evolution, coupling, max_step, [&](std::size_t i, const LawState<T>& y) {
       const LawState<double>& data = trajectory.rows[i].data;
       misfit[i] = y.P - data.P;
       for (std::size_t a = 0; a < axes; ++a) {

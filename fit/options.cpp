@@ -18,6 +18,8 @@ void check(const CalibrationOptions& options) {
   positive(options.rate_window, "rate_window");
   positive(options.steady_from, "steady_from");
   positive(options.steady_weight, "steady_weight");
+  positive(options.stiffness_window, "stiffness_window");
+  positive(options.lag_window, "lag_window");
   positive(options.max_step, "max_step");
   positive(options.pressure_scale, "pressure_scale");
   positive(options.stress_scale, "stress_scale");

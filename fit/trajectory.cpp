@@ -45,7 +45,7 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
   t.segment = segment;
   t.start = measured_state(test, start);
   t.nu_start = start.nu;
-  t.direction = law_direction({D});
+  t.direction = law_direction(StrainRate{D});
   t.axes = axes_of(test);
   t.starts_on_law = t.axes.empty();
   const double nu_min = t.starts_on_law ? std::max(nu_c, options.iso_nu_min) : nu_c;
@@ -79,12 +79,16 @@ std::vector<Trajectory> trajectories_of(const DataSet& data, double nu_c, const 
   std::vector<Trajectory> all;
   for (const TestRecord* test : data.all_used()) {
     std::size_t first = 0;
+    Deviator<double> s_r = Deviator<double>::Zero();
     for (std::size_t i = 1; i <= test->rows.size(); ++i) {
       if (i < test->rows.size() && test->rows[i].segment == test->rows[i - 1].segment) continue;
       // The last row of a segment is the corner where the next one starts.
       if (i - first >= 2) {
         all.push_back(segment_of(*test, test->rows[i - 1].segment, first, i, nu_c, options));
         all.back().cluster = cluster_of(data, *test);
+        all.back().start.s_r = s_r;
+        if (all.back().start.P > 0) turn_corner(Rung::memory, all.back().start, all.back().direction);
+        s_r = all.back().start.s_r;
       }
       first = i - 1;
     }

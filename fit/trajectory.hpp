@@ -1,6 +1,6 @@
 #pragma once
 // A stretch of a test along one straight segment, as the evolution stage sees it: a start, a direction, rows to meet.
-//   d(state)/de = evolution_rate(...) of Eq. (16), state (P, sigma', F'), e the segment's path parameter
+//   d(state)/de = law_rate(...) of Eq. (16), with or without memory, e the segment's path parameter
 // Integrated from row to row by Butcher's explicit Runge-Kutta method of order 6 (7 stages; J. Aust. Math. Soc. 4, 1964)
 // at fixed steps: the error is smooth in the parameters, as derivatives through it must be, and at the default step below
 // 1e-8. Each segment starts from the state measured at its first row (ISO unloading: from Eq. (14), of which Eq. (16) is
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "fit/data_set.hpp"
-#include "model/evolution.hpp"
+#include "model/law.hpp"
 
 namespace grainlaw::fit {
 
@@ -33,7 +33,7 @@ struct Trajectory {
   int cluster = 0;
   int segment = 0;
   bool starts_on_law = false;          ///< P by Eq. (14) at nu_start, else all of `start`
-  LawState<double> start = kNoState;   ///< measured
+  LawState<double> start = kNoState;   ///< measured; s_r the measured ratio at the reversal before, if any
   double nu_start = 0;                 ///< [-]
   LawDirection direction;              ///< per unit of e
   std::vector<Deviator<double>> axes;  ///< orthonormal; deviators are compared along these, the first one is N of s_par
@@ -87,15 +87,15 @@ LawState<T> butcher6_step(const Rate& rate, double h, const LawState<T>& y) {
 
 /// The law along the trajectory; `visit(i, state)` is called for each row in order. False when the state leaves P > 0.
 template <class T, class Visit>
-bool integrate(const Trajectory& trajectory, const LawParameters<T>& p, Coupling coupling, double max_step,
+bool integrate(const Trajectory& trajectory, const LawParameters<T>& p, Rung rung, Coupling coupling, double max_step,
                const Visit& visit) {
-  LawState<T> y{T(trajectory.start.P), trajectory.start.sigma.template cast<T>(),
-                trajectory.start.F.template cast<T>()};
+  LawState<T> y{T(trajectory.start.P), trajectory.start.sigma.template cast<T>(), trajectory.start.F.template cast<T>(),
+                trajectory.start.s_r.template cast<T>()};
   if (trajectory.starts_on_law) y.P = p.isotropic.P_star(trajectory.nu_start);
   std::array<LawModuli<T>, kStepNodes.size()> moduli;
-  moduli.fill(moduli_at(p, trajectory.nu_start));
+  moduli.fill(law_moduli(p, trajectory.nu_start, rung));
   const auto rate = [&](std::size_t node, const LawState<T>& state) {
-    return evolution_rate(moduli[node], p.anisotropy, coupling, state, trajectory.direction);
+    return law_rate(moduli[node], p, rung, coupling, state, trajectory.direction);
   };
   const double strain_rate = std::max(trajectory.direction.de, std::abs(trajectory.direction.dx));
   double e = 0;
@@ -108,7 +108,7 @@ bool integrate(const Trajectory& trajectory, const LawParameters<T>& p, Coupling
       if (trajectory.direction.dx != 0) {
         moduli.front() = moduli.back();  // the end of the step before
         for (std::size_t node = 1; node < moduli.size(); ++node) {
-          moduli[node] = moduli_at(p, trajectory.nu(e + (step + kStepNodes[node]) * h));
+          moduli[node] = law_moduli(p, trajectory.nu(e + (step + kStepNodes[node]) * h), rung);
         }
       }
       y = butcher6_step<T>(rate, h, y);

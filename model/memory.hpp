@@ -1,18 +1,18 @@
 #pragma once
 // Eq. (16) with a memory: what dilatancy at constant volume, reversals and the fabric of uniaxial paths need
 // (docs/decisions/0004-memory-law.md). Compression positive, dimensionless; notation of evolution.hpp, s = sigma'/P.
-//   s_b     = s_r + Delta N on |s_b| = s_max        limit of s along N, seen from the stress ratio at the last reversal
-//   flow    = (s_b - s)/max(Delta, Delta_least),    S = <flow,N>
-//   dP      = B dx + A1 S de + k (P_t - P) (1 - S) de,  P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
-//   dsigma' = A2 F' dx + DG flow de,                DG = G (nu_P/nu_c - 1)^alpha
-//   dF'     = lambda ((F_max/s_max) s - F') de - c_F F' <dx>,  <dx> the compressive part of dx
+//   Delta   distance from s_r, the stress ratio at the last reversal, along N to |s| = s_max;  xi = |s - s_r|/Delta
+//   flow    = N - xi^(m-1) (s - s_r)/Delta,         S = <flow,N>, on co-axial paths 1 - xi^m
+//   dP      = B dx + A1 S de + k (P_t - P) xi de,   P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
+//   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha
+//   dF'     = lambda ((F_max/s_max) s - F') de - c_F F' dx
+//   A1      = (2/3)(a2 B <F',N> - <sigma',N>)
 // P relaxes to its sheared level at constant volume: nu_J = nu_c nu/nu_P is the evolving jamming density, with nu_P the
 // density at which the reference, ISO unloading, carries P. To first order, nu_P = nu exp((P - P_iso)/B_iso); below nu_c
 // the reference goes on along its tangent. B and DG are those at nu_P.
 // A reversal is a jump, s_r := s, where <s - s_r, N> < 0. The rate of a state that should have turned is that of the
 // turned one: trial steps of a solver are harmless.
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -20,7 +20,7 @@
 
 namespace grainlaw {
 
-/// Least distance to the limit that the stress stiffens over, in s_max: no small cycle near the limit is stiff.
+/// Delta, in s_max, below which the stress goes to its limit no faster: no small cycle near the limit is stiff.
 inline constexpr double kLeastDistance = 0.1;
 
 /// <s - s_r, N>: a reversal is where it is, or falls, below zero. Zero without shear.
@@ -70,42 +70,48 @@ T pressure_density(const LawModuli<T>& m, const T& P) {
   return m.nu * exp((P - m.P_iso) / m.B);
 }
 
-namespace detail {
-
-/// (s_b - s)/max(Delta, Delta_least).
+/// Loading since the last reversal.
 template <class T>
-Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_max) {
+struct MemoryLoading {
+  T xi{};            ///< part of the way to the limit that is gone: 0 at a reversal, 1 on the limit [-]
+  Deviator<T> flow;  ///< how the stress ratio answers to shear, N at a reversal, 0 on the limit [-]
+};
+
+template <class T>
+MemoryLoading<T> memory_loading(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_max,
+                                const T& m) {
+  using std::pow;
   using std::sqrt;
   if ((s - s_r).dot(N) < 0.0) s_r = s;
   if (const T r2 = s_r.squaredNorm(); r2 > s_max * s_max) s_r *= s_max / sqrt(r2);
-  const T along = s_r.dot(N), inside = along * along + s_max * s_max - s_r.squaredNorm();
-  const T Delta = inside > 0.0 ? T(sqrt(inside) - along) : T(-along);
-  const T least = kLeastDistance * s_max;
-  return (s_r + N * Delta - s) / (Delta > least ? Delta : least);
+  const T along = s_r.dot(N), square = along * along + s_max * s_max - s_r.squaredNorm();
+  const T Delta = square > 0.0 ? T(sqrt(square) - along) : T(-along), least = kLeastDistance * s_max;
+  const Deviator<T> gone = s - s_r;
+  if (Delta < least) return {T(1.0), (N * Delta - gone) / least};
+  const T gone2 = gone.squaredNorm(), xi = gone2 > 0.0 ? T(sqrt(gone2) / Delta) : T(0.0);
+  return {xi, N - gone * (pow(xi, m - 1.0) / Delta)};
 }
 
-}  // namespace detail
-
-/// Right-hand side without corotational terms; `m` by memory_moduli. Finite for P > 0.
+/// Right-hand side without corotational terms; `m` by memory_moduli. Finite for P > 0 and nu_P > nu_c.
 template <class T>
-LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, Coupling coupling, const LawState<T>& y,
+LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y,
                         const LawDirection& direction) {
   using std::abs;
   using std::pow;
   const Deviator<T> N = direction.N.template cast<T>();
   const T nu_P = pressure_density(m, y.P), B = p.isotropic.B_star(nu_P);
-  const AnisotropyModuli<T> A = anisotropy_moduli(p.anisotropy, coupling, B, y, N);
   LawState<T> rate;
   rate.P = B * direction.dx;
-  rate.sigma = y.F * (A.A2_per_F * direction.dx);
-  rate.F = y.F * (-p.memory.c_F * std::max(direction.dx, 0.0));
+  rate.sigma = y.F * (p.memory.a2 * B * direction.dx);
+  rate.F = y.F * (-p.memory.c_F * direction.dx);
   if (direction.de == 0) return rate;
-  const Deviator<T> s = y.sigma / y.P, flow = detail::memory_flow(s, y.s_r, N, m.s_max);
-  const T S = flow.dot(N), f = y.F.dot(N) / m.F_max,
-          DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);
-  const T P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
-  rate.P += (A.A1 * S + p.memory.k * (P_t - y.P) * (1.0 - S)) * direction.de;
-  rate.sigma += flow * (DG * direction.de);
+  const Deviator<T> s = y.sigma / y.P;
+  const MemoryLoading<T> loading = memory_loading(s, y.s_r, N, m.s_max, p.memory.m);
+  const T A1 = (2.0 / 3.0) * (p.memory.a2 * B * y.F.dot(N) - y.sigma.dot(N));
+  const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
+  const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);
+  rate.P += (A1 * loading.flow.dot(N) + p.memory.k * (P_t - y.P) * loading.xi) * direction.de;
+  rate.sigma += loading.flow * (DG * direction.de);
   rate.F += (s * (m.F_max / m.s_max) - y.F) * (p.memory.lambda * direction.de);
   return rate;
 }

@@ -48,9 +48,11 @@ const std::array<ParameterInfo, kParameterCount>& parameter_table() {
       {"anisotropy.a2", "a_2", "16", "A2/(B F_dev), deviatoric stress row", -10, 10, 1, none},
       {"memory.G", "G", "memory", "elastic shear modulus 2G* = G (nu_P/nu_c - 1)^alpha: prefactor", 0.01, 10, 0.5, none},
       {"memory.alpha", "alpha", "memory", "elastic shear modulus: exponent", 0.05, 2, 0.5, none},
+      {"memory.m", "m", "memory", "exponent of loading, S = 1 - xi^m, fixed", 1, 20, 2, none},
       {"memory.k", "k", "memory", "rate in shear at which P* goes to its sheared level", 0, 500, 20, none},
       {"memory.lambda", "lambda", "memory", "rate in shear at which fabric follows stress", 1, 2000, 100, none},
-      {"memory.c_F", "c_F", "memory", "dilution of fabric by compression", 0, 100, 10, none},
+      {"memory.c_F", "c_F", "memory", "dilution of fabric by compression", -100, 100, 5, none},
+      {"memory.a2", "a_2", "memory", "A2/(B F_dev) with fabric that compression dilutes", -10, 10, 1, none},
   }};
   // clang-format on
   return table;

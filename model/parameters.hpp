@@ -29,9 +29,11 @@ struct Anisotropy {
 template <class T>
 struct Memory {
   T G{}, alpha{};  ///< DG = G (nu_P/nu_c - 1)^alpha [-]
+  T m{};           ///< exponent of loading, S = 1 - xi^m; fixed [-]
   T k{};           ///< rate of P towards its sheared level [-]
   T lambda{};      ///< rate at which fabric follows stress [-]
   T c_F{};         ///< dilution of fabric by compression [-]
+  T a2{};          ///< A2/(B F_dev), with fabric that is diluted [-]
 };
 
 template <class T>
@@ -49,7 +51,7 @@ struct LawParameters {
   Memory<T> memory;
 };
 
-inline constexpr std::size_t kParameterCount = 39;
+inline constexpr std::size_t kParameterCount = 41;
 
 /// The fields in the order of parameter_table(). `Law` is LawParameters<T> or const LawParameters<T>.
 template <class Law>
@@ -67,7 +69,7 @@ auto fields(Law& p) {
       &p.fabric_max.Q_limit, &p.fabric_max.Q_c, &p.fabric_max.alpha,
       &p.fabric_rate.Q_limit, &p.fabric_rate.Q_c, &p.fabric_rate.alpha,
       &p.anisotropy.a0, &p.anisotropy.a1, &p.anisotropy.a2,
-      &p.memory.G, &p.memory.alpha, &p.memory.k, &p.memory.lambda, &p.memory.c_F};
+      &p.memory.G, &p.memory.alpha, &p.memory.m, &p.memory.k, &p.memory.lambda, &p.memory.c_F, &p.memory.a2};
 }
 
 struct ParameterInfo {

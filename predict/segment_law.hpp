@@ -2,7 +2,7 @@
 // Eq. (16), with or without memory, on a straight segment in the unknowns that are integrated. Its volumetric terms are
 // total differentials, B dx = dP(nu) with P(nu) of Eq. (14), and need no integration where F' stays:
 //   y = (Pi, tau (5), F' (5), s_r (5)),   P = P(nu) + Pi,   sigma' = tau + g F'
-//   g = a2 P(nu) (Coupling::energy) or (a0/3) ln(nu/nu_start) (Coupling::single), so that dg = (A2/F') dx
+//   g = a2 P(nu) (Coupling::energy, memory) or (a0/3) ln(nu/nu_start) (Coupling::single), so that dg = (A2/F') dx
 //   dPi = A1 S de,   dtau = DG (N - sigma'/(P s_max)) de - g dF',   dF', ds_r as they are
 // Memory's B is that at its own jamming density, and what it differs by from P(nu)'s stays in dPi and dtau.
 // Without it an error made where P is large is carried down to where it is small: from nu = 0.82 to 0.67 it grows 54 times.
@@ -33,7 +33,7 @@ class SegmentLaw {
         rung_(rung),
         coupling_(coupling),
         segment_(&segment),
-        direction_(law_direction(segment.direction)),
+        direction_(law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin))),
         P_held_(P_held) {}
 
   const StraightSegment& segment() const { return *segment_; }
@@ -59,7 +59,7 @@ class SegmentLaw {
     state.P = std::max(state.P, P_held_);
     const LawModuli<double> m = law_moduli(*p_, nu_of_rate(e), rung_);
     const LawState<double> of_state = law_rate(m, *p_, rung_, coupling_, state, direction_);
-    const double dg = coupling_ == Coupling::energy ? p_->anisotropy.a2 * m.B : p_->anisotropy.a0 / 3.0;
+    const double dg = single() ? p_->anisotropy.a0 / 3.0 : a2() * m.B;
     rate[0] = of_state.P - m.B * direction_.dx;
     deviator_at(rate + 1) = of_state.sigma - state.F * (dg * direction_.dx) - g(e) * of_state.F;
     deviator_at(rate + 6) = of_state.F;
@@ -83,13 +83,14 @@ class SegmentLaw {
     return std::max(segment_->nu(e), jammed);
   }
 
+  bool single() const { return rung_ == Rung::evolution && coupling_ == Coupling::single; }
+  double a2() const { return rung_ == Rung::memory ? p_->memory.a2 : p_->anisotropy.a2; }
+
   double P_ref(double e) const {
     return rung_ == Rung::memory ? reference_pressure(*p_, segment_->nu(e)) : p_->isotropic.P_star(segment_->nu(e));
   }
 
-  double g(double e) const {
-    return coupling_ == Coupling::energy ? p_->anisotropy.a2 * P_ref(e) : p_->anisotropy.a0 / 3.0 * direction_.dx * e;
-  }
+  double g(double e) const { return single() ? p_->anisotropy.a0 / 3.0 * direction_.dx * e : a2() * P_ref(e); }
 
   const LawParameters<double>* p_;
   Rung rung_;

@@ -29,7 +29,7 @@ double largest_error(double max_step, double& fabric_error) {
   const double F_max = p.fabric_max.value(0.70, p.shear_nu_c), beta_F = p.fabric_rate.value(0.70, p.shear_nu_c);
   double error = 0;
   fabric_error = 0;
-  EXPECT_TRUE(integrate(t, p, Coupling::single, max_step, [&](std::size_t i, const LawState<double>& y) {
+  EXPECT_TRUE(integrate(t, p, Rung::evolution, Coupling::single, max_step, [&](std::size_t i, const LawState<double>& y) {
     const double e = t.rows[i].e * t.direction.de;
     error = std::max(error, std::abs(y.sigma.dot(t.direction.N) / y.P - saturating(s_max, 0.0, beta_s, e)));
     fabric_error = std::max(fabric_error, std::abs(y.F.dot(t.direction.N) - saturating(F_max, 0.0, beta_F, e)));
@@ -52,7 +52,7 @@ TEST(Trajectory, IsotropicPathIsEq14) {
   t.nu_start = 0.82;
   t.starts_on_law = true;
   for (int i = 1; i <= 50; ++i) t.rows.push_back({std::log(0.82 / 0.675) / 3 * i / 50, kNoState, 1});
-  ASSERT_TRUE(integrate(t, p, Coupling::energy, 2e-3, [&](std::size_t i, const LawState<double>& y) {
+  ASSERT_TRUE(integrate(t, p, Rung::evolution, Coupling::energy, 2e-3, [&](std::size_t i, const LawState<double>& y) {
     const double nu = t.nu(t.rows[i].e);
     EXPECT_NEAR(y.P, p.isotropic.P_star(nu), 1e-9 * y.P) << nu;
   }));
@@ -66,7 +66,7 @@ TEST(Trajectory, SaysWhenThePressureIsGone) {
   t.nu_start = 0.70;
   t.start = {1e-4, Deviator<double>::Zero(), Deviator<double>::Zero()};  // far below Eq. (14): used up on the way
   t.rows.push_back({0.01, kNoState, 1});
-  EXPECT_FALSE(integrate(t, p, Coupling::energy, 2e-3, [](std::size_t, const LawState<double>&) {}));
+  EXPECT_FALSE(integrate(t, p, Rung::evolution, Coupling::energy, 2e-3, [](std::size_t, const LawState<double>&) {}));
 }
 
 TEST(Trajectory, OnePerSegmentEachFromItsCorner) {

@@ -96,9 +96,11 @@ TEST(Parameters, EachNameIsTheFieldThatItSays) {
                                                       {"anisotropy.a2", &p.anisotropy.a2},
                                                       {"memory.G", &p.memory.G},
                                                       {"memory.alpha", &p.memory.alpha},
+                                                      {"memory.m", &p.memory.m},
                                                       {"memory.k", &p.memory.k},
                                                       {"memory.lambda", &p.memory.lambda},
-                                                      {"memory.c_F", &p.memory.c_F}};
+                                                      {"memory.c_F", &p.memory.c_F},
+                                                      {"memory.a2", &p.memory.a2}};
   ASSERT_EQ(expected.size(), kParameterCount);
   const auto field = fields(p);
   for (std::size_t i = 0; i < kParameterCount; ++i) {

@@ -1,0 +1,150 @@
+#include "fit/memory_fit.hpp"
+
+#include <ceres/jet.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/evolution_fit.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+constexpr int kMostParameters = 6;
+using Jet = ceres::Jet<double, kMostParameters>;
+constexpr double kVague = 0.5;  // relative error beyond which a parameter is no number
+constexpr double kRounding = 1e-9;
+
+std::vector<std::string> free_names(bool volumetric) {
+  std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda"};
+  if (volumetric) names.insert(names.end(), {"memory.c_F", "memory.a2"});
+  return names;
+}
+
+/// model - data of one trajectory along N of its test's first shear: all P, then s, then F.
+struct MemoryMisfit {
+  Trajectory trajectory;
+  LawParameters<double> fixed;
+  std::vector<std::size_t> index;  // in parameter_table(), of each free parameter
+  double max_step;
+
+  template <class T>
+  bool operator()(const T* x, T* misfit) const {
+    LawParameters<T> p = cast<T>(fixed);
+    const auto field = fields(p);
+    for (std::size_t k = 0; k < index.size(); ++k) *field[index[k]] = x[k];
+    const std::size_t rows = trajectory.rows.size();
+    const Deviator<double>& axis = trajectory.axes.front();
+    const Deviator<T> n = axis.template cast<T>();
+    return integrate<T>(trajectory, p, Rung::memory, Coupling::energy, max_step,
+                        [&](std::size_t i, const LawState<T>& y) {
+                          const LawState<double>& data = trajectory.rows[i].data;
+                          misfit[i] = y.P - data.P;
+                          misfit[rows + i] = y.sigma.dot(n) / y.P - data.sigma.dot(axis) / data.P;
+                          misfit[2 * rows + i] = y.F.dot(n) - data.F.dot(axis);
+                        });
+  }
+};
+
+bool constant_volume(const Trajectory& t) { return std::abs(t.direction.dx) <= 1e-12; }
+
+/// Adds the rows up to `window` of deviatoric strain, or all, as one channel whose rows together weigh 1/scale.
+void add_channel(const Trajectory& t, const std::string& quantity, double window, ResidualBlock& block,
+                 double (*datum)(const Trajectory&, const LawState<double>&),
+                 double (*scale)(const LawState<double>&, const CalibrationOptions&),
+                 const CalibrationOptions& options) {
+  const int rows = static_cast<int>(t.rows.size()), first = rows * static_cast<int>(block.channels.size());
+  const auto in = [&](const TrajectoryRow& row) { return t.direction.de * row.e <= window + kRounding; };
+  const auto count = std::count_if(t.rows.begin(), t.rows.end(), in);
+  Channel channel{quantity, first, rows, t.excluded, 0};
+  for (int i = 0; i < rows; ++i) {
+    const TrajectoryRow& row = t.rows[static_cast<std::size_t>(i)];
+    channel.max_abs_data = std::max(channel.max_abs_data, std::abs(datum(t, row.data)));
+    if (in(row)) block.weight(first + i) = 1 / (std::sqrt(static_cast<double>(count)) * scale(row.data, options));
+  }
+  block.channels.push_back(channel);
+}
+
+ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, const std::vector<std::size_t>& index,
+                       const CalibrationOptions& options) {
+  constexpr double all = 1e300, none = -1;
+  const bool shear = constant_volume(t);
+  ResidualBlock block;
+  block.test = t.test;
+  block.cluster = t.cluster;
+  block.weight = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(t.rows.size()));
+  add_channel(
+      t, "P_star", shear ? all : none, block, [](const Trajectory&, const LawState<double>& y) { return y.P; },
+      [](const LawState<double>& y, const CalibrationOptions& o) { return o.pressure_scale * y.P; }, options);
+  add_channel(
+      t, "s_par", shear ? options.stiffness_window : all, block,
+      [](const Trajectory& of, const LawState<double>& y) { return y.sigma.dot(of.axes.front()) / y.P; },
+      [](const LawState<double>&, const CalibrationOptions& o) { return o.stress_scale; }, options);
+  add_channel(
+      t, "F_par", shear ? options.lag_window : all, block,
+      [](const Trajectory& of, const LawState<double>& y) { return y.F.dot(of.axes.front()); },
+      [](const LawState<double>&, const CalibrationOptions& o) { return o.fabric_scale; }, options);
+  block.evaluate = differentiated<Jet>(MemoryMisfit{t, fixed, index, options.max_step}, static_cast<int>(index.size()),
+                                       block.rows());
+  return block;
+}
+
+std::string window_text(const CalibrationOptions& options) {
+  return fmt::format(
+      "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative, "
+      "scale {:g}, s_par of eps_dev <= {:g}, scale {:g}, F_par of eps_dev <= {:g}, scale {:g}; where the volume "
+      "changes s_par and F_par of all rows",
+      options.pressure_scale, options.stiffness_window, options.stress_scale, options.lag_window, options.fabric_scale);
+}
+
+}  // namespace
+
+MemoryProblem memory_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
+                             bool volumetric, const CalibrationOptions& options) {
+  MemoryProblem problem;
+  std::vector<std::size_t> index;
+  const auto value = fields(start);
+  for (const std::string& name : free_names(volumetric)) {
+    index.push_back(parameter_index(name));
+    problem.parameters.push_back(free_parameter(name, *value[index.back()]));
+  }
+  for (const Trajectory& t : trajectories) {
+    if (!t.axes.empty() && !t.rows.empty()) problem.blocks.push_back(block_of(t, start, index, options));
+  }
+  return problem;
+}
+
+StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
+                    const CalibrationOptions& options, const RunControl& control) {
+  const std::string remedy =
+      "add a test that shears and then changes the volume, e.g. D2 to eps_dev = 0.15 and then ISO to nu + 0.03 and "
+      "back";
+  const bool volumetric = contains_anisotropy(trajectories);
+  const MemoryProblem problem = memory_problem(trajectories, law, volumetric, options);
+  StageFit fit =
+      fit_stage("memory", window_text(options), problem.parameters, problem.blocks,
+                "the trajectories do not determine it; shear at more and at lower densities", options.threads, control);
+  if (fit.solution.defined) {
+    const auto field = fields(law);
+    for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
+      const std::string& name = problem.parameters[k].name;
+      const double value = fit.solution.x(static_cast<Eigen::Index>(k));
+      *field[parameter_index(name)] = value;
+      const double error = fit.stage.estimates[k].estimate.standard_error;
+      if (error > kVague * std::abs(value))
+        fit.mark_not_identified(
+            name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
+                      (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));
+    }
+  }
+  if (!volumetric) {
+    for (const char* name : {"memory.c_F", "memory.a2"})
+      fit.stage.estimates.push_back({name, {0, std::nan(""), Status::not_identified, remedy}});
+  }
+  return fit;
+}
+
+StageFit no_memory(const std::string& remedy) { return skipped_stage("memory", free_names(true), remedy); }
+
+}  // namespace grainlaw::fit
