@@ -5,7 +5,7 @@
 //   flow    = N - xi^(m-1) (s - s_r)/Delta,         S = <flow,N>, on co-axial paths 1 - xi^m
 //   dP      = B dx + A1 S de + k (P_t - P) xi de,   P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
 //   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha
-//   dF'     = lambda ((F_max/s_max) s - F') de - c_F F' dx
+//   dF'     = lambda ((F_max/s_max) s - F') de - c_F F' <dx>,  <dx> the compressive part of dx
 //   A1      = (2/3)(a2 B <F',N> - <sigma',N>)
 // P relaxes to its sheared level at constant volume: nu_J = nu_c nu/nu_P is the evolving jamming density, with nu_P the
 // density at which the reference, ISO unloading, carries P. To first order, nu_P = nu exp((P - P_iso)/B_iso); below nu_c
@@ -13,6 +13,7 @@
 // A reversal is a jump, s_r := s, where <s - s_r, N> < 0. The rate of a state that should have turned is that of the
 // turned one: trial steps of a solver are harmless.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -103,7 +104,7 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   LawState<T> rate;
   rate.P = B * direction.dx;
   rate.sigma = y.F * (p.memory.a2 * B * direction.dx);
-  rate.F = y.F * (-p.memory.c_F * direction.dx);
+  rate.F = y.F * (-p.memory.c_F * std::max(direction.dx, 0.0));
   if (direction.de == 0) return rate;
   const Deviator<T> s = y.sigma / y.P;
   const MemoryLoading<T> loading = memory_loading(s, y.s_r, N, m.s_max, p.memory.m);

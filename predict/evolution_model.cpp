@@ -58,7 +58,7 @@ class PathIntegration {
     if (e == e_) return true;
     const double target = std::min(e, jammed_until_);
     Unknowns y = at_corner_;
-    if (target * law_->segment().direction.tensor.norm() <= kTinyStrain) {
+    if (target * (law_->segment().direction.tensor + law_->segment().spin).norm() <= kTinyStrain) {
       Unknowns rate;
       law_->rate(0, y.data(), rate.data());
       for (std::size_t i = 0; i < kUnknowns; ++i) y[i] += target * rate[i];

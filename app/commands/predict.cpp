@@ -11,6 +11,7 @@
 #include "app/new_packings.hpp"
 #include "app/output_folder.hpp"
 #include "model/error.hpp"
+#include "predict/rung_advice.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -114,8 +115,26 @@ OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) 
   return summary;
 }
 
-std::string text_of(const PredictionFolder& content, const fs::path& output) {
-  std::string text;
+/// Which rung the path needs, and what each richer one changes on the curves from the law's start.
+std::string advice_on(const Law& law, const PredictionFolder& content) {
+  const predict::RungAdvice advice = predict::rung_needed(law.calibration.parameters, law.segments);
+  std::string text = fmt::format("needs     {}: {}\n", to_string(advice.rung), advice.why);
+  const PredictedCurve* cheaper = nullptr;
+  for (const PredictedCurve& curve : content.curves) {
+    if (curve.seed) continue;
+    if (cheaper != nullptr) {
+      const predict::RungDifference d = predict::difference(cheaper->prediction, curve.prediction);
+      text += fmt::format(
+          "{} instead of {} changes P* by up to {:.1f} %, the stress ratio by {:.4f}, the fabric by {:.4f}\n",
+          to_string(curve.model), to_string(cheaper->model), 100 * d.P, d.s, d.F);
+    }
+    cheaper = &curve;
+  }
+  return text;
+}
+
+std::string text_of(const Law& law, const PredictionFolder& content, const fs::path& output) {
+  std::string text = advice_on(law, content);
   for (const PredictedCurve& curve : content.curves) {
     if (curve.seed || curve.prediction.rows.empty()) continue;
     const predict::PredictedRow& end = curve.prediction.rows.back();
@@ -177,7 +196,7 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
       if (warned.insert(warning).second) session.progress.log("warning: " + warning);
     }
   }
-  print_result(session.json ? json_text(summary_of(content, options.output)) : text_of(content, options.output));
+  print_result(session.json ? json_text(summary_of(content, options.output)) : text_of(law, content, options.output));
   return ExitCode::ok;
 }
 

@@ -135,7 +135,8 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
   document["coupling"] = to_string(calibration.coupling);
   document["converged"] = calibration.converged;
   document["options"] = {{"iso_nu_min", options.iso_nu_min},         {"rate_window", options.rate_window},
-                         {"steady_from", options.steady_from},       {"max_step", options.max_step},
+                         {"steady_from", options.steady_from},       {"stiffness_window", options.stiffness_window},
+                         {"lag_window", options.lag_window},         {"max_step", options.max_step},
                          {"pressure_scale", options.pressure_scale}, {"stress_scale", options.stress_scale},
                          {"fabric_scale", options.fabric_scale}};
   document["dataset_digest"] = dataset_digest;

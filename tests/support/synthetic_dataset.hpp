@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "model/evolution.hpp"
+#include "model/law.hpp"
 #include "model/path.hpp"
 #include "model/test_record.hpp"
 
@@ -30,6 +30,7 @@ struct SyntheticOptions {
   double shear_strain = 0.30;           ///< eps_dev of D2
   int rows = 120;                       ///< per segment
   bool sequences = true;                ///< D2 to eps_dev = 0.15, ISO to nu + 0.03 and back
+  Rung rung = Rung::evolution;      ///< of the paths with shear
   Coupling coupling = Coupling::energy;
   double dilatancy_strain = 0;      ///< P approaches the steady law as 1 - exp(-eps_dev/this); 0: no dilatancy
   double noise_P = 0;               ///< standard deviation, relative to P [-]
@@ -177,7 +178,7 @@ class SyntheticDataset {
     boost::numeric::odeint::integrate_adaptive(
         stepper,
         [&](const Vector& at, Vector& rate, double e) {
-          rate = pack(evolution_rate(law_, options_.coupling, unpack(at), segment.nu(e), direction));
+          rate = pack(law_rate(law_, options_.rung, options_.coupling, unpack(at), segment.nu(e), direction));
         },
         v, from, to, (to - from) / 4);
     y = unpack(v);

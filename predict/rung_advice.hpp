@@ -1,0 +1,27 @@
+#pragma once
+// Which rung of the law a path needs, and what a richer one changes on it.
+
+#include "predict/predict.hpp"
+
+namespace grainlaw::predict {
+
+struct RungAdvice {
+  Rung rung = Rung::reduced;  ///< the cheapest that contains what the path does
+  std::string why;            ///< e.g. "segments[1] turns the shear back"
+};
+
+/// memory where shear turns back, or where at constant volume the sheared pressure differs from that of ISO unloading by
+/// more than 2 %; evolution where the volume changes with or after shear; else reduced.
+RungAdvice rung_needed(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments);
+
+/// Largest differences over the rows that both have.
+struct RungDifference {
+  double P = 0;  ///< of P*, relative to the first's [-]
+  double s = 0;  ///< |sigma'/P - sigma'/P| [-]
+  double F = 0;  ///< |F' - F'| [-]
+};
+
+/// Of two predictions at the same points.
+RungDifference difference(const Prediction& cheaper, const Prediction& richer);
+
+}  // namespace grainlaw::predict

@@ -1,0 +1,86 @@
+#!/usr/bin/env bash
+# tests/acceptance/law.sh [OUT]: the rungs of the law against DEM runs that the calibration never saw, one line each:
+#   NAME VALUE BOUND ok|short          exit 0 only if none is short
+# OUT holds, or gets, what examples/law/run.sh makes (default build/acceptance/law). From the measured start, mean over seeds:
+#   PATH.RUNG.QUANTITY.bias, .rms      bias, and RMS over the largest |DEM|, per rung
+#   PATH.memory.K.s, .F                strain to the sign change in segment K, law over DEM minus 1
+#   PATH.memory.K.dip                  least P* of segment K over that at its corner, law minus DEM
+#   dilatancy.RUNG.NU                  rise of P* in D2 at constant volume, law minus DEM
+# Bounds are the goals of the memory rung; the other rungs are stated.
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+out=$(realpath -m "${1:-$here/../../build/acceptance/law}")
+cd "$here/../.."
+# shellcheck source=tests/acceptance/figures.sh
+. "$here/figures.sh"
+if [[ ! -s $out/report.html ]]; then examples/law/run.sh "$out" >&2; fi
+bin=build/release/bin
+
+# The goal for a quantity of a path: of memory alone.
+goal() { # path rung quantity kind
+  case $1.$2.$3.$4 in
+    uniaxial-0.*.memory.s_par.bias | uniaxial-0.*.memory.F_par.bias) echo "<=0.005" ;;
+    uniaxial-0.*.memory.P_star.rms) echo "<=0.02" ;;
+    cyclic-*.memory.P_star.rms) echo "<=0.03" ;;
+    *) echo stated ;;
+  esac
+}
+
+magnitude() { awk -v x="$1" 'BEGIN { print x < 0 ? -x : x }'; }
+
+held_out() { # folder of a prediction
+  local path rung quantity bias rms bound
+  path=$(basename "$1")
+  while read -r rung quantity bias rms; do
+    bound=$(goal "$path" "$rung" "$quantity" bias)
+    if [[ $bound == stated ]]; then figure "$path.$rung.$quantity.bias" "$bias" stated
+    else figure "$path.$rung.$quantity.|bias|" "$(magnitude "$bias")" "$bound"; fi
+    figure "$path.$rung.$quantity.rms" "$rms" "$(goal "$path" "$rung" "$quantity" rms)"
+  done < <(jq -r '.comparisons[] | select(.seed == null and .initial == "measured") as $c | $c.quantities[]
+                  | "\($c.model) \(.quantity) \(.bias) \(.normalised_rms)"' "$1/comparison.json")
+}
+
+reversals() { # folder of a prediction
+  local path rung name value bound
+  path=$(basename "$1")
+  for rung in evolution memory; do
+    while read -r name value; do
+      bound=stated
+      if [[ $rung == memory ]]; then case $name in *.dip) bound="<=0.03" ;; *) bound="<=0.15" ;; esac; fi
+      if [[ $bound == stated ]]; then figure "$path.$rung.$name" "$value" stated
+      else figure "$path.$rung.|$name|" "$(magnitude "$value")" "$bound"; fi
+    done < <(paste -d' ' <(awk -f "$here/reversals.awk" "$1/$rung"-measured-s*.csv) <(awk -f "$here/reversals.awk" "$1"/dem/*.csv) |
+      awk '{ printf "%d.s %.4f\n%d.F %.4f\n%d.dip %.5f\n", $2, $4 / $12 - 1, $2, $6 / $14 - 1, $2, $8 - $16 }')
+  done
+}
+
+# Mean P* over eps_dev >= .15 over that of the first row, minus 1, mean over the CSVs of one density.
+rise() { # csv...
+  awk -F, 'FNR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
+           FNR == 2 { start = $column["P_star"] }
+           $column["eps_dev"] >= 0.15 { sum += $column["P_star"] / start; rows++ }
+           END { print sum / rows - 1 }' "$@"
+}
+
+dilatancy() {
+  local nu rung dem folder
+  folder=$(mktemp -d)
+  for nu in 0.68 0.70 0.74 0.80; do
+    printf '{"initial": {"nu": %s}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.26}}]}' "$nu" >"$folder/path.json"
+    "$bin/grainlaw" predict "$out/parameters.json" "$folder/path.json" -o "$folder/$nu" --quiet >/dev/null
+    dem=$(rise "$out"/dataset/D2-$nu-s*.csv)
+    figure "dilatancy.DEM.$nu" "$dem" stated
+    for rung in evolution memory; do
+      figure "dilatancy.$rung.$nu" "$(awk -v a="$(rise "$folder/$nu/$rung-law.csv")" -v b="$dem" 'BEGIN { print a - b }')" stated
+    done
+  done
+  rm -rf "$folder"
+}
+
+for folder in "$out"/predictions/*/; do
+  held_out "${folder%/}"
+  case $folder in *cyclic*) reversals "${folder%/}" ;; esac
+done
+dilatancy
+finish_figures

@@ -1,0 +1,113 @@
+#include "fit/memory_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fit/calibrate.hpp"
+#include "tests/support/synthetic_dataset.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+using testing::SyntheticOptions;
+
+/// Parameters of the size that DEM gives.
+LawParameters<double> truth() {
+  LawParameters<double> p = testing::synthetic_truth();
+  p.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1};
+  return p;
+}
+
+SyntheticOptions of_memory() {
+  SyntheticOptions options;
+  options.rung = Rung::memory;
+  options.rows = 60;
+  return options;
+}
+
+std::vector<Trajectory> trajectories(const std::vector<TestRecord>& tests) {
+  return trajectories_of(check_and_sort(tests), truth().isotropic.pressure.nu_c, {});
+}
+
+/// The truth with memory's parameters where a fit begins.
+LawParameters<double> at_start() {
+  LawParameters<double> p = truth();
+  p.memory = start_parameters().memory;
+  return p;
+}
+
+const Estimate& estimate(const StageFit& fit, const std::string& name) {
+  for (const NamedEstimate& e : fit.stage.estimates) {
+    if (e.name == name) return e.estimate;
+  }
+  throw std::out_of_range(name);
+}
+
+TEST(MemoryFit, GivesBackWhatMadeTheData) {
+  const auto tests = testing::synthetic_dataset(truth(), of_memory());
+  LawParameters<double> law = at_start();
+  const StageFit fit = fit_memory(trajectories(tests), law, {}, {});
+  EXPECT_TRUE(fit.stage.converged) << fit.stage.termination;
+  const LawParameters<double> expected = truth();
+  EXPECT_NEAR(law.memory.G, expected.memory.G, 1e-5);
+  EXPECT_NEAR(law.memory.alpha, expected.memory.alpha, 1e-5);
+  EXPECT_NEAR(law.memory.k, expected.memory.k, 1e-3);
+  EXPECT_NEAR(law.memory.lambda, expected.memory.lambda, 1e-2);
+  EXPECT_NEAR(law.memory.c_F, expected.memory.c_F, 1e-4);
+  EXPECT_NEAR(law.memory.a2, expected.memory.a2, 1e-5);
+  EXPECT_EQ(law.memory.m, 2) << "fixed";
+  for (const char* name : {"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.c_F", "memory.a2"})
+    EXPECT_EQ(estimate(fit, name).status, Status::fitted) << name;
+}
+
+TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
+  SyntheticOptions options = of_memory();
+  options.sequences = false;
+  LawParameters<double> law = at_start();
+  const StageFit fit = fit_memory(trajectories(testing::synthetic_dataset(truth(), options)), law, {}, {});
+  for (const char* name : {"memory.c_F", "memory.a2"}) {
+    EXPECT_EQ(estimate(fit, name).status, Status::not_identified) << name;
+    EXPECT_NE(estimate(fit, name).note.find("ISO"), std::string::npos) << "names the remedy";
+  }
+  EXPECT_EQ(estimate(fit, "memory.k").status, Status::fitted);
+}
+
+TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
+  SyntheticOptions few = of_memory();
+  few.densities = {0.70, 0.74};
+  const Calibration calibration = calibrate(testing::synthetic_dataset(truth(), few), {}, {});
+  EXPECT_FALSE(has_values(calibration, "memory"));
+  const Estimate& G = calibration.estimates[parameter_index("memory.G")];
+  EXPECT_EQ(G.status, Status::not_identified);
+  EXPECT_NE(G.note.find("shear by D2 at more densities"), std::string::npos) << G.note;
+  EXPECT_EQ(calibration.estimates[parameter_index("memory.m")].status, Status::fixed);
+}
+
+TEST(MemoryFit, ASegmentThatTurnsBackStartsFromItsReversal) {
+  testing::SyntheticDataset data(truth(), of_memory());
+  auto tests = data.records();
+  tests.push_back(data.test("cycle", 9, 0.72,
+                            {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.1),
+                             testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.1, true),
+                             testing::synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.74)}));
+  int found = 0;
+  for (const Trajectory& t : trajectories(tests)) {
+    if (t.test != "cycle") continue;
+    ++found;
+    const Deviator<double> s = t.start.sigma / t.start.P;
+    if (t.segment == 0) {
+      EXPECT_TRUE(t.start.s_r.isZero(0));
+    }
+    if (t.segment == 1) {
+      EXPECT_EQ(t.start.s_r, s);
+    }
+    if (t.segment == 2) {
+      EXPECT_GT((t.start.s_r - s).norm(), 0.1) << "carried on";
+    }
+  }
+  EXPECT_EQ(found, 3);
+}
+
+}  // namespace
+}  // namespace grainlaw::fit
