@@ -93,10 +93,10 @@ TEST(Calibrate, StagesStandInTheirOrder) {
     EXPECT_FALSE(stage.window.empty()) << stage.name;
     EXPECT_FALSE(stage.tests.empty()) << stage.name;
   }
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"coordination", "rattlers", "pressure", "overlap", "fabric_trace",
-                                      "steady_coordination", "steady_rattlers", "steady_pressure", "shear",
-                                      "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate", "evolution"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"coordination", "rattlers", "pressure", "overlap", "fabric_trace",
+                                             "steady_coordination", "steady_rattlers", "steady_pressure", "shear",
+                                             "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate",
+                                             "evolution", "memory"}));
 }
 
 TEST(Calibrate, SingleCouplingKnowsOnlyA0) {
