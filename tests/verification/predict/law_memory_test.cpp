@@ -78,11 +78,11 @@ TEST(Memory, TwoIntegratorsAgree) {
 
 TEST(Memory, PressureRisesInShearAndDipsWhereItTurns) {
   const LawParameters<double> p = parameters();
-  const auto path = path_from(0.69, {leg(Mode::D2, 0.3), leg(Mode::D2, 0.3, true)});
+  const auto path = path_from(0.69, {leg(Mode::D2, 0.5), leg(Mode::D2, 0.5, true)});
   const auto points = uniform_points(path, 300);
   const auto rows = predict(Rung::memory, p, Coupling::energy, path, state_from_law(p, 0.69), points, {}, {}, {}).rows;
   ASSERT_EQ(rows.size(), points.size());
-  const double P_D2 = p.steady.P_star(0.69);
+  const double P_D2 = p.steady.P_star(0.69);  // reached like exp(-26 e): to 1e-5 at the end of each leg
   EXPECT_NEAR(rows[300].state.P, P_D2, 1e-3 * P_D2);
   EXPECT_NEAR(rows.back().state.P, P_D2, 1e-3 * P_D2);
   double least = P_D2;
@@ -97,7 +97,7 @@ TEST(Memory, PressureRisesInShearAndDipsWhereItTurns) {
                p.memory.alpha);
   const auto crossing =
       std::find_if(rows.begin() + 301, rows.end(), [](const PredictedRow& row) { return row.s_par < 0; });
-  EXPECT_GT(crossing->shear_path - 0.3, rows[300].s_par * least / DG);
+  EXPECT_GT(crossing->shear_path - 0.5, rows[300].s_par * least / DG);
 }
 
 TEST(Memory, SpinTurnsTheStateAndNothingElse) {
