@@ -1,6 +1,6 @@
 #pragma once
 // Eq. (16) with a memory: what dilatancy at constant volume, reversals and the fabric of uniaxial paths need
-// (docs/decisions/0004-memory-law.md). Compression positive, dimensionless; notation of evolution.hpp, s = sigma'/P.
+// (docs/decisions/0005-memory-law.md). Compression positive, dimensionless; notation of evolution.hpp, s = sigma'/P.
 //   Delta   distance from s_r, the stress ratio at the last reversal, along N to |s| = s_max;  xi = |s - s_r|/Delta
 //   flow    = N - xi^(m-1) (s - s_r)/Delta,         S = <flow,N>, on co-axial paths 1 - xi^m
 //   dP      = B dx + A1 S de + k (P_t - P) xi de,   P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
