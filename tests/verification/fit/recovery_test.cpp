@@ -45,6 +45,7 @@ TEST_P(ExactData, EveryStageTogetherFindsTheTruth) {
     if (status == fit::Status::not_identified || status == fit::Status::tied) continue;
     // In shear of exact Eq. (16) data P stays near the isotropic level: there is no steady pressure of its own to find.
     if (name.rfind("steady_pressure", 0) == 0) continue;
+    if (name.rfind("memory", 0) == 0) continue;  // of another law than the one that made the data; memory_fit_test.cpp has its own
     const double scale = *expected[i] != 0 ? std::abs(*expected[i]) : std::abs(*expected[i + 1]);
     worst = std::max(worst, std::abs(*value[i] - *expected[i]) / scale);
   }
