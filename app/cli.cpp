@@ -11,6 +11,7 @@
 #include "app/commands/calibrate.hpp"
 #include "app/commands/predict.hpp"
 #include "app/commands/simulate.hpp"
+#include "app/commands/study_integrator.hpp"
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
 #include "app/one_line.hpp"
@@ -123,6 +124,25 @@ void add_report(CLI::App& app, Common& common, Task& task) {
   });
 }
 
+void add_study(CLI::App& app, Common& common, Task& task) {
+  CLI::App* study = app.add_subcommand("study", "measurements of the program itself: integrator");
+  study->require_subcommand(1);
+  study->footer(kExitCodes);
+  CLI::App* command = study->add_subcommand("integrator", "what integrating a path costs at which error");
+  auto options = std::make_shared<StudyIntegratorOptions>();
+  command->add_option("-o,--output", options->output, "folder for study.json and work_precision.svg")->required();
+  command->add_option("--parameters", options->parameters, "parameters.json; default: the published values");
+  command->add_option("--repeats", options->repeats, "repeats of each path, of which the least time counts")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--paths", options->paths, "paths of the batch over all threads")
+      ->check(CLI::Range(1, 10000000))
+      ->capture_default_str();
+  add_common(*command, common);
+  command->callback(
+      [options, &task] { task = [options](Session& session) { return study_integrator(*options, session); }; });
+}
+
 int fail(ExitCode code, const std::string& message) {
   std::fputs(fmt::format("grainlaw: {}\n", one_line(message)).c_str(), stderr);  // the exit code says it too
   return static_cast<int>(code);
@@ -165,7 +185,7 @@ int run(int argc, char** argv) {
   app.footer(kExitCodes);
   Common common;
   Task task;
-  for (const auto add : {add_simulate, add_calibrate, add_predict, add_report}) add(app, common, task);
+  for (const auto add : {add_simulate, add_calibrate, add_predict, add_report, add_study}) add(app, common, task);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version

@@ -9,6 +9,7 @@
 // Below jamming: C* = C0, P* = 0, B* = 0. All quantities dimensionless (* = times 2<r>/k).
 // Templated on the scalar because the fit takes derivatives through them.
 
+#include <array>
 #include <cmath>
 
 namespace grainlaw {
@@ -84,22 +85,29 @@ struct StateLaw {
     return pressure.scaled(nu) * nu * C(nu) / pressure.nu_c;
   }
 
-  /// B* = dP*/dx = (p0 X/nu_c) {1 - 2 gamma_p x + x (1 - gamma_p x) [1 + dlnC/dlnnu]}, X = nu C.
+  /// P* and B* = dP*/dx = (p0 X/nu_c) {1 - 2 gamma_p x + x (1 - gamma_p x) [1 + dlnC/dlnnu]}, X = nu C, which share
+  /// their logarithm, exponential and power: right-hand sides need both.
   template <class N>
-  auto B_star(const N& nu) const -> decltype(nu * coordination.nu_c) {
+  auto P_and_B(const N& nu) const -> std::array<decltype(nu * coordination.nu_c), 2> {
     using std::log;
-    using std::pow;
     const auto x = log(nu / pressure.nu_c);
-    if (!(x > 0.0)) return 0.0 * x;
+    if (!(x > 0.0)) return {0.0 * x, 0.0 * x};
     const auto y = nu / coordination.nu_c - 1.0;
     const auto phi_r = rattlers.fraction(nu, coordination.nu_c);
+    const auto C_star = coordination.C_star(nu);
     auto dlnC = rattlers.phi_v * (1.0 + y) * phi_r / (1.0 - phi_r);
     if (y > 0.0) {
-      dlnC = dlnC + coordination.C1 * coordination.alpha * pow(y, coordination.alpha - 1.0) * (1.0 + y) /
-                        coordination.C_star(nu);
+      // C1 alpha y^(alpha-1) = alpha (C* - C0)/y
+      dlnC = dlnC + coordination.alpha * (C_star - kIsostaticCoordination) / y * (1.0 + y) / C_star;
     }
     const auto& g = pressure.gamma_p;
-    return pressure.p0 * nu * C(nu) / pressure.nu_c * (1.0 - 2.0 * g * x + x * (1.0 - g * x) * (1.0 + dlnC));
+    const auto unit = pressure.p0 * nu * ((1.0 - phi_r) * C_star) / pressure.nu_c;
+    return {unit * x * (1.0 - g * x), unit * (1.0 - 2.0 * g * x + x * (1.0 - g * x) * (1.0 + dlnC))};
+  }
+
+  template <class N>
+  auto B_star(const N& nu) const -> decltype(nu * coordination.nu_c) {
+    return P_and_B(nu)[1];
   }
 };
 

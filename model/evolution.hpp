@@ -17,21 +17,23 @@ namespace grainlaw {
 /// What a right-hand side takes from the volume fraction alone; worth keeping where that does not change.
 template <class T>
 struct LawModuli {
-  T B{};       ///< bulk modulus B* of ISO unloading [-]
+  T P_iso{};   ///< pressure of ISO unloading, Eq. (14) [-]
+  T B{};       ///< its derivative, the bulk modulus B* [-]
   T s_max{};   ///< limit of the stress ratio [-]
   T beta_s{};  ///< its growth rate [-]
   T F_max{};   ///< limit of the deviatoric fabric [-]
   T beta_F{};  ///< its growth rate [-]
   // of the memory rung only
   T nu{};        ///< volume fraction [-]
-  T P_iso{};     ///< pressure of ISO unloading, Eq. (14) [-]
   T P_steady{};  ///< pressure of steady shear [-]
 };
 
 template <class T>
 LawModuli<T> moduli_at(const LawParameters<T>& p, double nu) {
   LawModuli<T> m;
-  m.B = p.isotropic.B_star(nu);
+  const auto P_and_B = p.isotropic.P_and_B(nu);
+  m.P_iso = P_and_B[0];
+  m.B = P_and_B[1];
   m.s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
   m.beta_s = p.stress_rate.value(nu, p.shear_nu_c);
   m.F_max = p.fabric_max.value(nu, p.shear_nu_c);

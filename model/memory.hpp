@@ -56,8 +56,11 @@ template <class T>
 LawModuli<T> memory_moduli(const LawParameters<T>& p, double nu) {
   LawModuli<T> m;
   m.nu = T(nu);
-  m.B = p.isotropic.B_star(reference_density(p, nu));
-  m.P_iso = reference_pressure(p, nu);
+  using std::log;
+  const T at = reference_density(p, nu);
+  const auto P_and_B = p.isotropic.P_and_B(at);
+  m.B = P_and_B[1];
+  m.P_iso = P_and_B[0] + m.B * log(nu / at);
   m.P_steady = p.steady.P_star(nu);
   m.s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
   m.F_max = p.fabric_max.value(nu, p.shear_nu_c);

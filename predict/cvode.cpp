@@ -13,32 +13,19 @@
 #include <limits>
 
 #include "model/error.hpp"
+#include "predict/state_vector.hpp"
+#include "predict/sundials_handle.hpp"
 
 namespace grainlaw::predict {
 namespace {
 
-struct Release {
-  void operator()(SUNContext context) const { SUNContext_Free(&context); }
-  void operator()(N_Vector vector) const { N_VDestroy(vector); }
-  void operator()(SUNMatrix matrix) const { SUNMatDestroy(matrix); }
-  void operator()(SUNLinearSolver solver) const { SUNLinSolFree(solver); }
-  void operator()(SUNNonlinearSolver solver) const { SUNNonlinSolFree(solver); }
-  void operator()(void* memory) const { CVodeFree(&memory); }
-};
+void free_context(SUNContext context) { SUNContext_Free(&context); }
+void free_memory(void* memory) { CVodeFree(&memory); }
 
-template <class Pointer>
-using Owned = std::unique_ptr<std::remove_pointer_t<Pointer>, Release>;
-
-template <class Pointer>
-Owned<Pointer> own(Pointer pointer, const char* what) {
-  if (!pointer) throw Error(fmt::format("CVODE: {} could not be created; is memory exhausted?", what));
-  return Owned<Pointer>(pointer);
-}
-
-Owned<SUNContext> create_context() {
+SUNContext new_context() {
   SUNContext context = nullptr;
   SUNContext_Create(nullptr, &context);
-  return own(context, "its context");
+  return created(context, "the context of CVODE");
 }
 
 // CVODE bounds the error of one step; that of the result, a sum over the steps, is larger. Against the closed forms (hard
@@ -59,12 +46,12 @@ struct Cvode::Impl {
   OdeScale scale;
   double relative = 0, absolute = 0;  // what the solver is given
   // Destroyed in reverse order: the solver's memory first, the context last.
-  Owned<SUNContext> context = create_context();
-  Owned<N_Vector> y;
-  Owned<SUNMatrix> matrix;
-  Owned<SUNLinearSolver> linear;
-  Owned<SUNNonlinearSolver> nonlinear;
-  Owned<void*> memory;
+  Owned<SUNContext, free_context> context{new_context()};
+  Owned<N_Vector, N_VDestroy> y;
+  Owned<SUNMatrix, SUNMatDestroy> matrix;
+  Owned<SUNLinearSolver, SUNLinSolFree> linear;
+  Owned<SUNNonlinearSolver, SUNNonlinSolFree> nonlinear;
+  Owned<void*, free_memory> memory;
 
   std::string message;         // what the solver said last
   bool step_vanished = false;  // it warned that t + h == t
@@ -164,11 +151,11 @@ void Cvode::Impl::initialise(double t_0, const Tolerances& tolerances) {
   const auto unknowns = static_cast<sunindextype>(size);
   if (tolerances.method == Method::adams) {
     require(CVodeSetMaxOrd(cvode, kMaxAdamsOrder), "CVodeSetMaxOrd");
-    nonlinear = own(SUNNonlinSol_FixedPoint(y.get(), 0, context.get()), "its iteration");
+    nonlinear.reset(created(SUNNonlinSol_FixedPoint(y.get(), 0, context.get()), "the iteration"));
     require(CVodeSetNonlinearSolver(cvode, nonlinear.get()), "CVodeSetNonlinearSolver");
   } else {
-    matrix = own(SUNDenseMatrix(unknowns, unknowns, context.get()), "its matrix");
-    linear = own(SUNLinSol_Dense(y.get(), matrix.get(), context.get()), "its linear solver");
+    matrix.reset(created(SUNDenseMatrix(unknowns, unknowns, context.get()), "the matrix"));
+    linear.reset(created(SUNLinSol_Dense(y.get(), matrix.get(), context.get()), "the linear solver"));
     require(CVodeSetLinearSolver(cvode, linear.get(), matrix.get()), "CVodeSetLinearSolver");
   }
   if (event) {
@@ -186,10 +173,9 @@ Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEv
   self.rate = std::move(rate);
   self.event = std::move(event);
   self.scale = std::move(scale);
-  self.y = own(N_VNew_Serial(static_cast<sunindextype>(size), self.context.get()), "its state vector");
-  N_VConst(0, self.y.get());
-  self.memory =
-      own(CVodeCreate(tolerances.method == Method::adams ? CV_ADAMS : CV_BDF, self.context.get()), "its memory");
+  self.y.reset(new_state_vector(size, self.context.get()));
+  self.memory.reset(created(CVodeCreate(tolerances.method == Method::adams ? CV_ADAMS : CV_BDF, self.context.get()),
+                            "the memory of CVODE"));
   self.initialise(0, tolerances);
 }
 

@@ -40,28 +40,36 @@ class SegmentLaw {
   const LawDirection& direction() const { return direction_; }
 
   Unknowns unknowns_of(double e, const LawState<double>& state) const {
+    const Place& here = at(e);
     Unknowns y;
-    y[0] = state.P - P_ref(e);
-    deviator_at(y.data() + 1) = state.sigma - g(e) * state.F;
+    y[0] = state.P - here.P_ref;
+    deviator_at(y.data() + 1) = state.sigma - here.g * state.F;
     deviator_at(y.data() + 6) = state.F;
     deviator_at(y.data() + 11) = state.s_r;
     return y;
   }
 
   LawState<double> state_of(double e, const double* y) const {
+    const Place& here = at(e);
     const Deviator<double> tau = deviator_at(y + 1), F = deviator_at(y + 6);
-    return {P_ref(e) + y[0], tau + g(e) * F, F, deviator_at(y + 11)};
+    return {here.P_ref + y[0], tau + here.g * F, F, deviator_at(y + 11)};
+  }
+
+  /// d(state)/de.
+  LawState<double> state_rate(double e, const LawState<double>& state) const {
+    LawState<double> held = state;
+    held.P = std::max(state.P, P_held_);
+    return law_rate(at(e).moduli, *p_, rung_, coupling_, held, direction_);
   }
 
   /// dy/de, into `rate`.
   void rate(double e, const double* y, double* rate) const {
-    LawState<double> state = state_of(e, y);
-    state.P = std::max(state.P, P_held_);
-    const LawModuli<double> m = law_moduli(*p_, nu_of_rate(e), rung_);
-    const LawState<double> of_state = law_rate(m, *p_, rung_, coupling_, state, direction_);
+    const LawState<double> state = state_of(e, y), of_state = state_rate(e, state);
+    const Place& here = at(e);
+    const LawModuli<double>& m = here.moduli;
     const double dg = single() ? p_->anisotropy.a0 / 3.0 : a2() * m.B;
     rate[0] = of_state.P - m.B * direction_.dx;
-    deviator_at(rate + 1) = of_state.sigma - state.F * (dg * direction_.dx) - g(e) * of_state.F;
+    deviator_at(rate + 1) = of_state.sigma - state.F * (dg * direction_.dx) - here.g * of_state.F;
     deviator_at(rate + 6) = of_state.F;
     deviator_at(rate + 11) = of_state.s_r;
   }
@@ -76,21 +84,33 @@ class SegmentLaw {
   }
 
  private:
-  /// Eq. (16) ends at the jamming density: B jumps to zero there, and just above it is the limit of the jammed side.
-  double nu_of_rate(double e) const {
-    if (rung_ == Rung::memory) return segment_->nu(e);
-    const double jammed = p_->isotropic.pressure.nu_c * (1 + 4 * std::numeric_limits<double>::epsilon());
-    return std::max(segment_->nu(e), jammed);
-  }
+  /// What depends on the path parameter alone: the expensive part of a rate, and the same for all that a solver asks
+  /// at one place (rate, weights, events), hence kept. One object serves one thread.
+  struct Place {
+    double e = std::numeric_limits<double>::quiet_NaN();
+    double P_ref = 0, g = 0;
+    LawModuli<double> moduli{};
+  };
 
   bool single() const { return rung_ == Rung::evolution && coupling_ == Coupling::single; }
   double a2() const { return rung_ == Rung::memory ? p_->memory.a2 : p_->anisotropy.a2; }
 
-  double P_ref(double e) const {
-    return rung_ == Rung::memory ? reference_pressure(*p_, segment_->nu(e)) : p_->isotropic.P_star(segment_->nu(e));
+  const Place& at(double e) const {
+    if (e == place_.e) return place_;
+    place_.e = e;
+    const double nu = segment_->nu_start * std::exp(direction_.dx * e);
+    if (rung_ == Rung::memory) {
+      place_.moduli = law_moduli(*p_, nu, rung_);
+      place_.P_ref = place_.moduli.P_iso;
+    } else {
+      // Eq. (16) ends at the jamming density: B jumps to zero there, and just above it is the limit of the jammed side.
+      const double jammed = p_->isotropic.pressure.nu_c * (1 + 4 * std::numeric_limits<double>::epsilon());
+      place_.moduli = law_moduli(*p_, std::max(nu, jammed), rung_);
+      place_.P_ref = nu > jammed ? place_.moduli.P_iso : 0;
+    }
+    place_.g = single() ? p_->anisotropy.a0 / 3.0 * direction_.dx * e : a2() * place_.P_ref;
+    return place_;
   }
-
-  double g(double e) const { return single() ? p_->anisotropy.a0 / 3.0 * direction_.dx * e : a2() * P_ref(e); }
 
   const LawParameters<double>* p_;
   Rung rung_;
@@ -98,6 +118,7 @@ class SegmentLaw {
   const StraightSegment* segment_;
   LawDirection direction_;
   double P_held_;
+  mutable Place place_;
 };
 
 }  // namespace grainlaw::predict

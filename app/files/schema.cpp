@@ -180,7 +180,8 @@ struct Schemas {
                                       {Schema::path, "path.schema.json"},
                                       {Schema::test, "test.schema.json"},
                                       {Schema::dataset, "dataset.schema.json"},
-                                      {Schema::parameters, "parameters.schema.json"}}) {
+                                      {Schema::parameters, "parameters.schema.json"},
+                                      {Schema::study, "study.schema.json"}}) {
       whole[which] = load(file);
       for_library[which] = without_unique_items(whole[which]);
     }

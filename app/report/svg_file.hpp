@@ -1,0 +1,12 @@
+#pragma once
+// A figure as a file of its own, in the colours of the page.
+
+#include <filesystem>
+
+#include "app/report/figure.hpp"
+
+namespace grainlaw::app::report {
+
+void write_svg(const std::filesystem::path& file, const Figure& figure);
+
+}  // namespace grainlaw::app::report

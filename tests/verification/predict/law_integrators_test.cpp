@@ -1,0 +1,120 @@
+// Paths by every integrator of the study, against the closed forms of Eqs. (17) and (18) and against one another.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "predict/batch.hpp"
+#include "predict/predict.hpp"
+#include "tests/support/figure.hpp"
+#include "tests/support/law_path.hpp"
+
+namespace grainlaw::predict {
+namespace {
+
+using testing::figure;
+using testing::leg;
+using testing::leg_to;
+using testing::path_from;
+
+LawParameters<double> parameters() {
+  LawParameters<double> p = published_parameters();
+  p.anisotropy.a2 = 1.18;
+  return p;
+}
+
+double distance(const LawState<double>& a, const LawState<double>& b) {
+  return std::max({std::abs(a.P / b.P - 1), (a.sigma - b.sigma).norm() / b.P, (a.F - b.F).norm()});
+}
+
+TEST(Integrators, FollowTheClosedFormAtConstantVolume) {
+  // a0 = 0: Eqs. (17) and (18) exactly, P constant
+  LawParameters<double> p = parameters();
+  p.anisotropy.a0 = 0;
+  const auto path = path_from(0.70, {leg(Mode::D2, 0.05)});
+  const LawState<double> start = state_from_law(p, 0.70);
+  const double s =
+      p.stress_ratio_max.value(0.70, p.shear_nu_c) * -std::expm1(-0.05 * p.stress_rate.value(0.70, p.shear_nu_c));
+  const double F =
+      p.fabric_max.value(0.70, p.shear_nu_c) * -std::expm1(-0.05 * p.fabric_rate.value(0.70, p.shear_nu_c));
+  const Deviator<double> N = shear_direction(path);
+  const LawState<double> exact{start.P, N * (s * start.P), N * F};
+  for (const Integrator integrator : kIntegrators) {
+    const bool euler = integrator == Integrator::euler;
+    double errors[2] = {};
+    for (const int i : {0, 1}) {
+      const double accuracy = (euler ? 1e-4 : 1e-5) * (i == 0 ? 1 : euler ? 0.1 : 1e-3);
+      Walker walker(integrator, accuracy, p, Rung::evolution, Coupling::single);
+      errors[i] = distance(walker.walk(path, start).ends.back(), exact);
+    }
+    figure("integrators." + to_string(integrator) + ".error", errors[1], euler ? 1e-4 : 1e-6);
+    EXPECT_LT(errors[1], 0.2 * errors[0]) << to_string(integrator) << ": a finer accuracy is more accurate";
+  }
+}
+
+TEST(Integrators, RandomPathsByTwoSolversAgreeWithATightReference) {
+  const LawParameters<double> p = parameters();
+  std::mt19937_64 engine{7};
+  const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine); };
+  Walker reference(Integrator::erk_8, 1e-13, p, Rung::evolution, Coupling::energy);
+  Walker adams(Integrator::adams, 1e-9, p, Rung::evolution, Coupling::energy);
+  Walker explicit_5(Integrator::erk_5, 1e-9, p, Rung::evolution, Coupling::energy);
+  double off_adams = 0, off_explicit = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<PathSegment> legs;
+    for (int k = 0; k < 5; ++k) {
+      PathSegment any{Mode::tensor, {}, ExtentKind::eps_dev, uniform(0.01, 0.1)};
+      Eigen::Matrix3d D;
+      for (int r = 0; r < 9; ++r) D(r) = uniform(-1, 1);
+      any.direction.tensor = (D + D.transpose()) / 2;
+      // dense enough for a jammed state: the volume grows on no leg, and shrinks little
+      any.direction.tensor -= Eigen::Matrix3d::Identity() * (any.direction.tensor.trace() / 3 + uniform(0, 0.05));
+      legs.push_back(any);
+    }
+    const auto path = path_from(uniform(0.69, 0.74), legs);
+    const LawState<double> start = state_from_law(p, path[0].nu_start);
+    const auto expected = reference.walk(path, start).ends, by_adams = adams.walk(path, start).ends,
+               by_explicit = explicit_5.walk(path, start).ends;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      off_adams = std::max(off_adams, distance(by_adams[k], expected[k]));
+      off_explicit = std::max(off_explicit, distance(by_explicit[k], expected[k]));
+    }
+  }
+  figure("integrators.random_paths.adams_error_over_rtol", off_adams / 1e-9, 10);
+  figure("integrators.random_paths.erk_5_error_over_rtol", off_explicit / 1e-9, 10);
+}
+
+TEST(Integrators, BatchesDoNotDependOnThreads) {
+  const LawParameters<double> p = parameters();
+  std::vector<BatchPath> paths;
+  for (int i = 0; i < 50; ++i) {
+    const double nu = 0.68 + 0.001 * i;
+    paths.push_back({path_from(nu, {leg_to(Mode::UNI, 0.80)}), state_from_law(p, nu)});
+  }
+  const auto run = [&](int threads) {
+    return walk_batch(paths, Integrator::adams, 1e-8, p, Rung::evolution, Coupling::energy, threads, {});
+  };
+  const auto one = run(1);
+  ASSERT_EQ(one.size(), paths.size());
+  int different = 0;
+  for (const int threads : {2, 3, 64}) {
+    const auto many = run(threads);
+    for (std::size_t i = 0; i < paths.size(); ++i)
+      different += many[i].P != one[i].P || many[i].sigma != one[i].sigma || many[i].F != one[i].F;
+  }
+  figure("integrators.batch.differing_paths", different, 0);
+
+  paths[20].start.P = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(run(2), std::exception);
+}
+
+TEST(Integrators, RefuseAccuraciesThatAreNone) {
+  const LawParameters<double> p = parameters();
+  for (const double bad : {0.0, -1e-6, 1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(Walker(Integrator::erk_5, bad, p, Rung::evolution, Coupling::energy), std::exception) << bad;
+}
+
+}  // namespace
+}  // namespace grainlaw::predict
