@@ -10,11 +10,14 @@
 namespace grainlaw::predict {
 
 struct PathStates {
-  std::vector<LawState<double>> states;  ///< one for each point reached, in their order
-  bool unjammed = false;                 ///< the states end because P or nu fell to that of jamming
-  OutputPoint unjammed_at;               ///< where, when `unjammed`
-  SolverStatistics statistics;           ///< without `seconds`
+  std::vector<LawState<double>> states;  ///< one for each point, in their order; zero while unjammed
+  std::vector<PathEvent> events;
+  SolverStatistics statistics;  ///< without `seconds`
 };
+
+/// One line for each way in which `rows` leave `range`, naming the farthest row, and for the first event of a kind.
+std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const std::vector<PathEvent>& events,
+                                     const ValidRange& range);
 
 /// Path parameter at which nu of `segment` falls to `nu_jamming`; infinite when its volume does not grow.
 inline double jamming_point(const StraightSegment& segment, double nu_jamming) {
@@ -23,13 +26,13 @@ inline double jamming_point(const StraightSegment& segment, double nu_jamming) {
   return std::log(segment.nu_start / nu_jamming) / dilation;
 }
 
-/// Eqs. (17), (18) from each corner on, P by Eq. (14). An isotropic segment keeps sigma'/P and F'.
+/// Eqs. (17), (18) from each corner on, P by Eq. (14). An isotropic segment keeps sigma'/P and F'. Unjams and jams at
+/// nu_c, where it begins anew.
 PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
                           const LawState<double>& start, const std::vector<OutputPoint>& points,
                           const RunControl& control);
 
-/// Rung::evolution or Rung::memory. Unjams where P falls to 1e-12 of its start; evolution also where nu falls to the
-/// jamming density of Eq. (14), which memory may pass.
+/// Rung::evolution or Rung::memory, with the events of path_integration.hpp.
 PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
                              const std::vector<StraightSegment>& segments, const LawState<double>& start,
                              const std::vector<OutputPoint>& points, const Tolerances& tolerances,

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -76,22 +75,19 @@ PredictedRow row_at(const StraightSegment& segment, const OutputPoint& point, do
   row.shear_path = path_before + segment.eps_dev_rate() * point.e;
   row.nu = segment.nu(point.e);
   row.state = state;
-  row.s_dev = state.sigma.norm() / state.P;
+  const bool jammed = state.P > 0;
+  row.s_dev = jammed ? state.sigma.norm() / state.P : kNaN;
   row.F_dev = state.F.norm();
   const bool sheared = !N.isZero();
-  row.s_par = sheared ? state.sigma.dot(N) / state.P : kNaN;
+  row.s_par = sheared && jammed ? state.sigma.dot(N) / state.P : kNaN;
   row.F_par = sheared ? state.F.dot(N) : kNaN;
   return row;
 }
 
-bool is_tensile(const PredictedRow& row) {
-  if (row.s_dev < 1.5) return false;  // the smallest principal value of sigma' is at least -(2/3) s_dev P
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tensor_of(row.state.sigma), Eigen::EigenvaluesOnly);
-  return row.state.P + solver.eigenvalues().minCoeff() < 0;
-}
+}  // namespace
 
-/// One line for each way in which `rows` leave `range`, naming the farthest row, or the stresses that grains can carry.
-std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const ValidRange& range) {
+std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const std::vector<PathEvent>& events,
+                                     const ValidRange& range) {
   constexpr double slack = 1e-9;  // rounding of a path that ends at the limit
   double nu_low = range.nu_min, nu_high = range.nu_max, eps_dev = range.eps_dev_max;
   for (const PredictedRow& row : rows) {
@@ -110,18 +106,30 @@ std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, cons
     warnings.push_back(
         fmt::format("eps_dev = {:.4g} lies beyond the calibrated strain {:.4g}", eps_dev, range.eps_dev_max));
   }
-  for (const PredictedRow& row : rows) {
-    if (!is_tensile(row)) continue;
-    warnings.push_back(
-        fmt::format("s_dev = {:.4g} at nu = {:.4g}: a principal stress is tensile, which grains without "
-                    "cohesion cannot carry",
-                    row.s_dev, row.nu));
-    break;
-  }
+  const auto first = [&](EventKind kind, const char* what) {
+    const auto event = std::find_if(events.begin(), events.end(), [&](const PathEvent& e) { return e.kind == kind; });
+    if (event == events.end()) return;
+    warnings.push_back(fmt::format("segments[{}] at nu = {:.4g}: {}", event->at.segment, event->nu, what));
+  };
+  first(EventKind::unjammed, "the state unjams; P, stress and fabric are zero until nu rises above that again");
+  first(EventKind::tension,
+        "a principal stress vanishes and the state unjams: grains without cohesion carry no tension; P, stress and "
+        "fabric "
+        "are zero until nu rises above that again");
   return warnings;
 }
 
-}  // namespace
+std::string to_string(EventKind kind) {
+  switch (kind) {
+    case EventKind::unjammed:
+      return "unjammed";
+    case EventKind::jammed:
+      return "jammed";
+    case EventKind::tension:
+      break;
+  }
+  return "tension";
+}
 
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {
   LawState<double> state{parameters.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
@@ -155,8 +163,11 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
 
   Prediction prediction;
   prediction.model = model;
-  prediction.unjammed = path.unjammed;
-  prediction.unjammed_at = path.unjammed_at;
+  prediction.events = path.events;
+  const auto first = std::find_if(path.events.begin(), path.events.end(),
+                                  [](const PathEvent& event) { return event.kind != EventKind::jammed; });
+  prediction.unjammed = first != path.events.end();
+  if (prediction.unjammed) prediction.unjammed_at = first->at;
   prediction.statistics = path.statistics;
   prediction.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
 
@@ -167,15 +178,15 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
   for (std::size_t i = 0; i < path.states.size(); ++i) {
     for (; k < static_cast<std::size_t>(points[i].segment); ++k)
       path_before += segments[k].eps_dev_rate() * segments[k].length;
-    if (!is_finite(path.states[i]) || !(path.states[i].P > 0)) {
+    if (!is_finite(path.states[i]) || !(path.states[i].P >= 0)) {
       throw Error(
-          fmt::format("segments[{}] at e = {:.9g}: the {} law gives a state that is not finite or P* <= 0; "
+          fmt::format("segments[{}] at e = {:.9g}: the {} law gives a state that is not finite or P* < 0; "
                       "check the parameters",
                       k, points[i].e, to_string(model)));
     }
     prediction.rows.push_back(row_at(segments[k], points[i], path_before, path.states[i], N));
   }
-  prediction.warnings = warnings_of(prediction.rows, range);
+  prediction.warnings = warnings_of(prediction.rows, prediction.events, range);
   return prediction;
 }
 

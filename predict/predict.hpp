@@ -44,29 +44,39 @@ struct PredictedRow {
   int segment = 0;                                          ///< index of the path's segment
   Strain strain;                                            ///< tension positive [-]
   double eps_vol = 0, eps_dev = 0, shear_path = 0, nu = 0;  ///< as in Observation [-]
-  LawState<double> state;                                   ///< P*, sigma'*, F' [-]
-  double s_dev = 0;                                         ///< |sigma'|/P [-]
+  LawState<double> state;                                   ///< P*, sigma'*, F' [-]; all zero while unjammed
+  double s_dev = 0;                                         ///< |sigma'|/P, NaN while unjammed [-]
   double s_par = 0;             ///< <sigma',N>/P, N the path's first shear direction; NaN on a path without shear [-]
   double F_dev = 0, F_par = 0;  ///< |F'| and <F',N>, likewise [-]
 };
 
+/// What happens on the way besides corners; see path_integration.hpp.
+enum class EventKind { unjammed, jammed, tension };
+std::string to_string(EventKind kind);
+
+struct PathEvent {
+  EventKind kind = EventKind::unjammed;
+  OutputPoint at;  ///< segment and path parameter
+  double nu = 0;   ///< volume fraction there [-]
+};
+
 struct SolverStatistics {
   long steps = 0, rhs_evaluations = 0, error_test_failures = 0, nonlinear_iterations = 0;  ///< of all segments
-  long restarts = 0;   ///< initialisations, one for each segment entered
+  long restarts = 0;   ///< initialisations, one for each segment entered and each event in it
   double seconds = 0;  ///< wall time of the integration [s]
 };
 
 struct Prediction {
   Rung model = Rung::evolution;
-  std::vector<PredictedRow> rows;  ///< ends early when the state unjams
+  std::vector<PredictedRow> rows;  ///< one for each point
   SolverStatistics statistics;
-  bool unjammed = false;    ///< P fell to zero (1e-12 of its start) or nu to pressure.nu_c; rows end before it
-  OutputPoint unjammed_at;  ///< where, when `unjammed`
+  std::vector<PathEvent> events;  ///< in their order
+  bool unjammed = false;          ///< P, a principal stress or nu - nu_c fell to zero: the first such event
+  OutputPoint unjammed_at;        ///< where, when `unjammed`
   std::vector<std::string> warnings;  ///< e.g. "nu = 0.85 lies outside the calibrated range 0.68-0.82"
 };
 
-/// Calibrated ranges, for the warnings: one for each way in which a prediction leaves them, and one where a principal
-/// stress turns tensile, which Eq. (16) does not exclude near unjamming.
+/// Calibrated ranges, for the warnings: one for each way in which a prediction leaves them, and one where it unjams.
 struct ValidRange {
   double nu_min = 0, nu_max = 1;  ///< volume fraction [-]
   double eps_dev_max = 1e300;     ///< deviatoric strain from the start of a test [-]

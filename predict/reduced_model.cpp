@@ -34,34 +34,40 @@ Ratios ratios_at(const LawParameters<double>& p, const Ratios& corner, const Law
 PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
                           const LawState<double>& start, const std::vector<OutputPoint>& points,
                           const RunControl& control) {
+  const double nu_c = parameters.isotropic.pressure.nu_c;
+  const Ratios none{Deviator<double>::Zero(), Deviator<double>::Zero()};
   PathStates out;
   out.states.reserve(points.size());
   Ratios corner{start.sigma / start.P, start.F};
+  bool jammed = true;
   std::size_t next = 0;
   for (std::size_t k = 0; k < segments.size() && next < points.size(); ++k) {
     const StraightSegment& segment = segments[k];
     const LawDirection direction = law_direction(segment.direction);
-    const double jammed_until = jamming_point(segment, parameters.isotropic.pressure.nu_c);
+    // nu passes nu_c once in a segment, down where it was jammed and up where it was not
+    const double crossing = std::max(std::log(nu_c / segment.nu_start) / direction.dx, 0.0);
+    const bool crosses = (jammed ? direction.dx < 0 : direction.dx > 0) && crossing <= segment.length;
+    const auto state_at = [&](double e) -> LawState<double> {
+      const bool after = crosses && e >= crossing;
+      if (jammed == after) return {0, none.q, none.F};
+      const double from = after ? crossing : 0;
+      const double nu = segment.nu(e), P = parameters.isotropic.P_star(nu);
+      const Ratios now = ratios_at(parameters, after ? none : corner, direction, nu, e - from);
+      return {P, now.q * P, now.F};
+    };
     for (; next < points.size() && points[next].segment == static_cast<int>(k); ++next) {
       if (control.stop.stop_requested()) throw Interrupted("the prediction was interrupted");
-      const double e = points[next].e;
-      if (e >= jammed_until) {
-        out.unjammed = true;
-        out.unjammed_at = {static_cast<int>(k), jammed_until};
-        return out;
-      }
-      const double nu = segment.nu(e);
-      const Ratios now = ratios_at(parameters, corner, direction, nu, e);
-      const double P = parameters.isotropic.P_star(nu);
-      out.states.push_back({P, now.q * P, now.F});
+      out.states.push_back(state_at(points[next].e));
     }
-    if (next == points.size()) break;
-    if (segment.length >= jammed_until) {
-      out.unjammed = true;
-      out.unjammed_at = {static_cast<int>(k), jammed_until};
-      break;
+    const bool reached = next < points.size() || (!points.empty() && points.back().e >= crossing);
+    if (crosses && reached)
+      out.events.push_back({jammed ? EventKind::unjammed : EventKind::jammed, {static_cast<int>(k), crossing}, nu_c});
+    if (jammed != crosses) {
+      const double from = crosses ? crossing : 0;
+      corner =
+          ratios_at(parameters, crosses ? none : corner, direction, segment.nu(segment.length), segment.length - from);
     }
-    corner = ratios_at(parameters, corner, direction, segment.nu(segment.length), segment.length);
+    jammed = jammed != crosses;
   }
   return out;
 }

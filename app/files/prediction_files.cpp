@@ -39,6 +39,11 @@ OrderedJson curve_to_json(const PredictedCurve& curve) {
   if (curve.prediction.unjammed) {
     object["unjammed_at"] = {{"segment", curve.prediction.unjammed_at.segment}, {"e", curve.prediction.unjammed_at.e}};
   }
+  OrderedJson& events = object["events"] = OrderedJson::array();
+  for (const predict::PathEvent& event : curve.prediction.events) {
+    events.push_back(
+        {{"kind", predict::to_string(event.kind)}, {"segment", event.at.segment}, {"e", event.at.e}, {"nu", event.nu}});
+  }
   object["warnings"] = curve.prediction.warnings;
   object["solver"] = {{"steps", s.steps},
                       {"rhs_evaluations", s.rhs_evaluations},
@@ -60,6 +65,12 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
   if (curve.prediction.unjammed) {
     const Json& at = object.at("unjammed_at");
     curve.prediction.unjammed_at = {at.at("segment"), at.at("e")};
+  }
+  for (const Json& event : object.at("events")) {
+    for (const auto kind : {predict::EventKind::unjammed, predict::EventKind::jammed, predict::EventKind::tension}) {
+      if (event.at("kind") == predict::to_string(kind))
+        curve.prediction.events.push_back({kind, {event.at("segment"), event.at("e")}, event.at("nu")});
+    }
   }
   curve.prediction.warnings = object.at("warnings").get<std::vector<std::string>>();
   const Json& s = object.at("solver");

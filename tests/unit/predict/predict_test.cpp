@@ -300,14 +300,28 @@ TEST(Reduced, OffAxisPartsDecay) {
   EXPECT_GT(rows.back().s_dev, 2 * rows.back().s_par) << "the new direction has taken over";
 }
 
-TEST(Reduced, EndsAtJamming) {
+TEST(Reduced, UnjamsAndJamsAgainAtTheJammingDensity) {
   const LawParameters<double> p = parameters();
-  const auto path = path_from(0.70, {leg_to(Mode::UNI, 0.60, true)});
+  const auto path = path_from(0.70, {leg_to(Mode::UNI, 0.60, true), leg_to(Mode::UNI, 0.70)});
   const Prediction prediction = run(Rung::reduced, path, uniform_points(path, 100));
   EXPECT_TRUE(prediction.unjammed);
   EXPECT_NEAR(prediction.unjammed_at.e, std::log(0.70 / p.isotropic.pressure.nu_c), 1e-15);
-  EXPECT_GT(prediction.rows.back().nu, p.isotropic.pressure.nu_c);
-  EXPECT_GT(prediction.rows.size(), 30U);
+  ASSERT_EQ(prediction.rows.size(), 202U);
+  ASSERT_EQ(prediction.events.size(), 2U);
+  EXPECT_EQ(prediction.events[1].kind, EventKind::jammed);
+  EXPECT_EQ(prediction.events[1].at.segment, 1);
+  EXPECT_NEAR(prediction.events[1].at.e, std::log(p.isotropic.pressure.nu_c / 0.60), 1e-15);
+  for (const PredictedRow& row : prediction.rows) {
+    EXPECT_EQ(row.state.P, p.isotropic.P_star(row.nu));
+    EXPECT_EQ(row.state.P == 0, std::isnan(row.s_dev));
+    EXPECT_EQ(row.state.P == 0, row.F_dev == 0 && row.state.sigma.isZero(0) && row.nu <= p.isotropic.pressure.nu_c);
+  }
+  // shear counts from where it jams
+  const PredictedRow& end = prediction.rows.back();
+  const double e = std::log(0.70 / p.isotropic.pressure.nu_c);
+  EXPECT_NEAR(end.s_dev,
+              p.stress_ratio_max.value(0.70, p.shear_nu_c) * -std::expm1(-p.stress_rate.value(0.70, p.shear_nu_c) * e),
+              1e-14);
 }
 
 TEST(Predict, NamesOfModels) {

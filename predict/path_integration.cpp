@@ -1,0 +1,166 @@
+#include "predict/path_integration.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "model/error.hpp"
+#include "predict/path_states.hpp"
+
+namespace grainlaw::predict {
+namespace {
+
+// Up to this strain one explicit Euler step is exact to rounding: its error is (beta e)^2/2 < 1e-22 for beta < 1e2..1e3.
+// It keeps the solver away from intervals that it cannot resolve (zero, one ulp, denormal).
+constexpr double kTinyStrain = 1e-13;
+
+// P below this part of its start counts as zero: the stress ratio sigma'/P has no meaning there.
+constexpr double kVanishedPressure = 1e-12;
+
+// Below this part of its start P is held fixed in the rate, which goes like 1/P: trial steps look beyond P = 0.
+constexpr double kHeldPressure = 1e-6;
+
+// |sigma'|/P up to which no principal stress can be tensile: the least eigenvalue is at least -(2/3)|sigma'|.
+constexpr double kSafeRatio = 1.2;
+
+constexpr double kRounding = 1e-9;  // of a least principal stress that vanishes, over P
+
+constexpr int kMostEventsInPlace = 20;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+double least_principal_stress(double P, const Deviator<double>& sigma) {
+  const double norm = sigma.norm();
+  if (norm <= kSafeRatio * P) return P - norm * (2.0 / 3.0);  // a bound will do there
+  return P + Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor_of(sigma), Eigen::EigenvaluesOnly).eigenvalues()(0);
+}
+
+PathIntegration::PathIntegration(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                                 const LawState<double>& start, const Tolerances& tolerances)
+    : parameters_(parameters),
+      rung_(rung),
+      coupling_(coupling),
+      P_held_(kHeldPressure * start.P),
+      P_floor_(kVanishedPressure * start.P),
+      solver_(
+          kUnknowns, tolerances, [this](double e, const double* y, double* rate) { law_->rate(e, y, rate); },
+          [this](double e, const double* y) { return event(e, y); },
+          [this](double e, const double* y, double* scale) { law_->scale(e, y, scale); }),
+      state_(start) {}
+
+/// Falls through zero where the state unjams or, under spin, reverses.
+double PathIntegration::event(double e, const double* y) const {
+  const LawState<double> state = law_->state_of(e, y);
+  double least = std::min(state.P - P_floor_, least_principal_stress(state.P, state.sigma));
+  const bool may_reverse =
+      rung_ == Rung::memory && law_->direction().de > 0 && !law_->direction().spin.isZero(0) && state.P > P_floor_;
+  if (may_reverse) least = std::min(least, reversal_value(state, law_->direction()));
+  return least;
+}
+
+void PathIntegration::note(EventKind kind) {
+  events_.push_back({kind, {static_cast<int>(index_), e_}, law_->segment().nu(e_)});
+}
+
+/// The solver's next run begins at e_ with `state`.
+void PathIntegration::start_from(const LawState<double>& state) {
+  state_ = state;
+  at_start_ = law_->unknowns_of(e_, state);
+  e_start_ = e_;
+  started_ = false;
+}
+
+void PathIntegration::enter(const StraightSegment& segment, std::size_t index) {
+  law_.emplace(parameters_, rung_, coupling_, segment, P_held_);
+  index_ = index;
+  e_ = 0;
+  events_in_place_ = 0;
+  jammed_until_ = rung_ == Rung::memory ? kInfinity : jamming_point(segment, parameters_.isotropic.pressure.nu_c);
+  if (!jammed_) return;
+  turn_corner(rung_, state_, law_->direction());
+  start_from(state_);
+}
+
+void PathIntegration::advance(double e) {
+  while (e_ < e) {
+    if (!jammed_)
+      move_unjammed(e);
+    else
+      move_jammed(e);
+  }
+}
+
+/// Path parameter at which nu rises to nu_J: there the state jams again.
+void PathIntegration::move_unjammed(double e) {
+  const StraightSegment& segment = law_->segment();
+  const double dx = law_->direction().dx;
+  const double e_J = dx > 0 ? std::max(std::log(nu_J_ / segment.nu_start) / dx, e_) : kInfinity;
+  if (!(e_J < e)) {
+    e_ = e;
+    return;
+  }
+  e_ = e_J;
+  jammed_ = true;
+  note(EventKind::jammed);
+  LawState<double> state{2 * P_floor_, Deviator<double>::Zero(), Deviator<double>::Zero()};
+  start_from(state);
+}
+
+void PathIntegration::move_jammed(double e) {
+  const StraightSegment& segment = law_->segment();
+  const double target = std::min(e, jammed_until_);
+  if (target <= e_) {  // at the jamming density already
+    take_event();
+    return;
+  }
+  Unknowns y = at_start_;
+  bool fallen = false;
+  if ((target - e_start_) * (segment.direction.tensor + segment.spin).norm() <= kTinyStrain) {
+    Unknowns slope;
+    law_->rate(e_start_, y.data(), slope.data());
+    for (std::size_t i = 0; i < kUnknowns; ++i) y[i] += (target - e_start_) * slope[i];
+    e_ = target;
+  } else {
+    if (!started_) solver_.start(e_start_, y, std::min(segment.length, jammed_until_));
+    started_ = true;
+    const Arrival arrival = solver_.advance(target, y);
+    if (arrival.kind == Arrival::Kind::failed) {
+      throw NotConverged(fmt::format(
+          "segments[{}] at path parameter e = {:.9g} of {:.9g}, nu = {:.9g}: {}; give another tolerance or method",
+          index_, arrival.t, segment.length, segment.nu(arrival.t), arrival.message));
+    }
+    if (arrival.t > e_) events_in_place_ = 0;
+    e_ = arrival.t;
+    fallen = arrival.kind == Arrival::Kind::event;
+  }
+  state_ = law_->state_of(e_, y.data());
+  if (fallen || e_ >= jammed_until_ || state_.P <= P_floor_) take_event();
+}
+
+/// Where event() has come to zero or nu to the jamming density.
+void PathIntegration::take_event() {
+  if (++events_in_place_ > kMostEventsInPlace) {
+    throw NotConverged(
+        fmt::format("segments[{}] at path parameter e = {:.9g}, nu = {:.9g}: events follow each other "
+                    "without end; give a tighter tolerance",
+                    index_, e_, law_->segment().nu(e_)));
+  }
+  // the root is found to rounding, on either side
+  const bool vanished = e_ >= jammed_until_ || state_.P <= 2 * P_floor_;
+  if (vanished || least_principal_stress(state_.P, state_.sigma) <= kRounding * state_.P) {
+    note(vanished ? EventKind::unjammed : EventKind::tension);
+    jammed_ = false;
+    nu_J_ = law_->segment().nu(e_);
+    state_ = {0, Deviator<double>::Zero(), Deviator<double>::Zero()};
+    return;
+  }
+  turn_corner(rung_, state_, law_->direction());
+  start_from(state_);
+}
+
+}  // namespace grainlaw::predict
