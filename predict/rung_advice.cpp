@@ -39,6 +39,7 @@ RungDifference difference(const Prediction& cheaper, const Prediction& richer) {
   RungDifference largest;
   for (std::size_t i = 0; i < std::min(cheaper.rows.size(), richer.rows.size()); ++i) {
     const LawState<double>&a = cheaper.rows[i].state, &b = richer.rows[i].state;
+    if (!(a.P > 0 && b.P > 0)) continue;  // unjammed: no ratio to compare
     largest.P = std::max(largest.P, std::abs(b.P / a.P - 1));
     largest.s = std::max(largest.s, (b.sigma / b.P - a.sigma / a.P).norm());
     largest.F = std::max(largest.F, (b.F - a.F).norm());

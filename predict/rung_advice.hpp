@@ -14,7 +14,7 @@ struct RungAdvice {
 /// more than 2 %; evolution where the volume changes with or after shear; else reduced.
 RungAdvice rung_needed(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments);
 
-/// Largest differences over the rows that both have.
+/// Largest differences over the rows that both have, jammed in both.
 struct RungDifference {
   double P = 0;  ///< of P*, relative to the first's [-]
   double s = 0;  ///< |sigma'/P - sigma'/P| [-]

@@ -11,6 +11,7 @@
 #include "app/new_packings.hpp"
 #include "app/output_folder.hpp"
 #include "model/error.hpp"
+#include "predict/mixed_control.hpp"
 #include "predict/rung_advice.hpp"
 
 namespace grainlaw::app {
@@ -21,10 +22,11 @@ namespace fs = std::filesystem;
 constexpr int kPointsPerSegment = 200;  // of a curve that no DEM run dictates
 
 /// The rung that is asked for, else reduced, evolution, and memory where it is calibrated.
-std::vector<Rung> rungs_of(const PredictOptions& options, const ParametersFile& parameters) {
+std::vector<Rung> rungs_of(const PredictOptions& options, const ParametersFile& parameters, const Path& path) {
   if (options.model) return {*options.model};
   std::vector<Rung> rungs{Rung::reduced, Rung::evolution};
   if (fit::has_values(parameters.calibration, "memory")) rungs.push_back(Rung::memory);
+  if (law_decides(path)) rungs.erase(rungs.begin());  // a closed form of the strain
   return rungs;
 }
 
@@ -37,7 +39,8 @@ std::vector<Initial> initials_of(const PredictOptions& options) {
 struct Law {
   const fit::Calibration& calibration;
   std::vector<Rung> rungs;
-  std::vector<StraightSegment> segments;
+  const Path& path;
+  std::vector<StraightSegment> segments;  ///< none where the law decides where the path leads
   predict::ValidRange range;
   RunControl control;
 
@@ -46,15 +49,20 @@ struct Law {
     return predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points,
                             predict::Tolerances{}, range, control);
   }
+
+  predict::Prediction at_equal_steps(Rung model, const LawState<double>& start) const {
+    if (!law_decides(path)) return along(model, start, predict::uniform_points(segments, kPointsPerSegment));
+    return predict::predict_by_law(model, calibration.parameters, calibration.coupling, path, start, kPointsPerSegment,
+                                   predict::Tolerances{}, range, control);
+  }
 };
 
 /// Curves at equal steps, from the law's own start.
 void add_free_curves(const Law& law, PredictionFolder& content) {
-  const auto points = predict::uniform_points(law.segments, kPointsPerSegment);
   const auto start = predict::state_from_law(law.calibration.parameters, content.path.nu);
   for (const Rung model : law.rungs) {
     content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)),
-                              law.along(model, start, points)});
+                              law.at_equal_steps(model, start)});
   }
 }
 
@@ -117,6 +125,8 @@ OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) 
 
 /// Which rung the path needs, and what each richer one changes on the curves from the law's start.
 std::string advice_on(const Law& law, const PredictionFolder& content) {
+  // where the law decides where the path leads, two rungs have no rows at the same strain
+  if (law_decides(law.path)) return "needs     evolution: the law decides the strain\n";
   const predict::RungAdvice advice = predict::rung_needed(law.calibration.parameters, law.segments);
   std::string text = fmt::format("needs     {}: {}\n", to_string(advice.rung), advice.why);
   const PredictedCurve* cheaper = nullptr;
@@ -159,13 +169,20 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
     throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem too");
   }
   const ParametersFile parameters = read_parameters(options.parameters);
-  const std::vector<Rung> rungs = rungs_of(options, parameters);
-  for (const Rung model : rungs) require_parameters(parameters, model, options.parameters.string());
   const PathFile path = read_path(options.path);
+  const std::vector<Rung> rungs = rungs_of(options, parameters, path.path);
+  if (law_decides(path.path) && rungs.front() == Rung::reduced) {
+    throw InvalidInput(
+        fmt::format("{}: segments: leave the strain to the law; the reduced one is a closed form of the strain, give "
+                    "--model evolution",
+                    options.path.string()));
+  }
+  for (const Rung model : rungs) require_parameters(parameters, model, options.parameters.string());
   const fit::Calibration& calibration = parameters.calibration;
   const Law law{calibration,
                 rungs,
-                resolve(path.path),
+                path.path,
+                law_decides(path.path) ? std::vector<StraightSegment>{} : resolve(path.path),
                 {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max},
                 {{}, session.stop}};
   predict::state_from_law(calibration.parameters,
