@@ -84,11 +84,12 @@ std::vector<StudyPath> study_paths(const LawParameters<double>& parameters) {
        leg(Mode::D2, ExtentKind::eps_dev, amplitude)});
   reversal.name = "reversal";
   reversal.description = "two cycles of D2 between eps_dev = +-0.05 at nu = 0.70";
-  const double end = parameters.isotropic.pressure.nu_c * (1 + 1e-3);
-  StudyPath near_unjamming = study_path(
-      parameters, 0.70, {leg(Mode::D3, ExtentKind::eps_dev, 0.1), leg(Mode::UNI, ExtentKind::target_nu, end, true)});
+  const double just_jammed = parameters.isotropic.pressure.nu_c * 1.002;
+  StudyPath near_unjamming =
+      study_path(parameters, 0.70,
+                 {leg(Mode::ISO, ExtentKind::target_nu, just_jammed, true), leg(Mode::D2, ExtentKind::eps_dev, 0.1)});
   near_unjamming.name = "near-unjamming";
-  near_unjamming.description = "D3 to eps_dev = 0.1 at nu = 0.70, then UNI extension to nu = 1.001 nu_c";
+  near_unjamming.description = "ISO unloading from nu = 0.70 to 1.002 nu_c, then D2 to eps_dev = 0.1";
   return {smooth, reversal, near_unjamming};
 }
 

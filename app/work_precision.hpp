@@ -19,7 +19,7 @@ struct StudyPath {
   LawState<double> start;
 };
 
-/// UNI from nu = .695 to .82; D2 to and fro at nu = .70; D2 at nu = .70, then ISO unloading to just above jamming.
+/// UNI from nu = .695 to .82; D2 to and fro at nu = .70; ISO unloading to just above jamming, then D2.
 std::vector<StudyPath> study_paths(const LawParameters<double>& parameters);
 
 struct WorkPoint {

@@ -4,9 +4,7 @@
 
 #include <atomic>
 #include <cstdlib>
-#include <memory>
 #include <new>
-#include <vector>
 
 #include "predict/predict.hpp"
 #include "predict/segment_law.hpp"
@@ -17,13 +15,14 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
-void* operator new(std::size_t size) {
+// Not inlined: g++ would see free() meet what a new-expression gave.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace grainlaw::predict {
 namespace {
@@ -34,7 +33,7 @@ TEST(Allocation, OfTheRightHandSideIsNone) {
   const LawState<double> start = state_from_law(p, 0.70);
 
   const long before_one = allocations;
-  std::make_unique<int>(1);
+  ::operator delete(::operator new(1));
   EXPECT_EQ(allocations - before_one, 1) << "the counter counts";
 
   long taken = 0;
