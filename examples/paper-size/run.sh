@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # examples/paper-size/run.sh [OUT]: packings of the paper's size at the paper's rate -> law -> report, then our curves
-# beside the published ones. A quarter of an hour on 2 cores.
+# beside the published ones. Two minutes on 2 cores.
 # Installs what is missing, builds Release, writes everything to OUT (./grainlaw-paper-size).
 # Finished simulations in OUT are reused: a second run takes seconds.
 set -euo pipefail
