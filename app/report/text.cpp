@@ -44,8 +44,8 @@ std::string sanitized(std::string_view text) {
 }
 
 std::string letter_of(std::string_view word) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 7> letters{
-      {{"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"nu", "ν"}, {"phi", "φ"}, {"sigma", "σ"}}};
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> letters{
+      {{"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"lambda", "λ"}, {"nu", "ν"}, {"phi", "φ"}, {"sigma", "σ"}}};
   for (const auto& [name, letter] : letters) {
     if (word == name) return std::string(letter);
   }
