@@ -29,8 +29,8 @@ void check_options(const PreparationOptions& o, const PreparationSink& sink) {
                        o.nu_max, kMaxVolumeFraction));
   }
   for (const double nu : o.keep_loading) {
-    if (!(nu > o.nu_start && nu <= o.nu_max)) {
-      refuse(fmt::format("densities: {} of the loading branch is outside ({}, {}]", nu, o.nu_start, o.nu_max));
+    if (!(nu >= o.nu_start && nu <= o.nu_max)) {
+      refuse(fmt::format("densities: {} of the loading branch is outside [{}, {}]", nu, o.nu_start, o.nu_max));
     }
   }
   const double lowest = o.nu_end.value_or(o.nu_start);
@@ -38,8 +38,8 @@ void check_options(const PreparationOptions& o, const PreparationSink& sink) {
     refuse(fmt::format("nu_end: {} is outside [nu_start, nu_max) = [{}, {})", lowest, o.nu_start, o.nu_max));
   }
   for (const double nu : o.keep_unloading) {
-    if (!(nu >= lowest && nu < o.nu_max)) {
-      refuse(fmt::format("densities: {} of the unloading branch is outside [{}, {})", nu, lowest, o.nu_max));
+    if (!(nu >= lowest && nu <= o.nu_max)) {
+      refuse(fmt::format("densities: {} of the unloading branch is outside [{}, {}]", nu, lowest, o.nu_max));
     }
   }
   if (!(o.gas_compression_factor > 0) || !std::isfinite(o.gas_compression_factor)) {

@@ -29,8 +29,8 @@ struct PreparationOptions {
   double nu_start = 0.64;         ///< end of the gas compression [-]
   double nu_max = 0.82;           ///< end of the loading branch [-]
   double gas_compression_factor = 10;  ///< strain rate of the gas compression over drive.strain_rate [-]
-  std::vector<double> keep_loading;    ///< densities kept on the loading branch, within (nu_start, nu_max]
-  std::vector<double> keep_unloading;  ///< densities kept on the unloading branch, within [nu_start, nu_max)
+  std::vector<double> keep_loading;    ///< densities kept on the loading branch, within [nu_start, nu_max]
+  std::vector<double> keep_unloading;  ///< densities kept on the unloading branch, within [nu_start or nu_end, nu_max]
   std::optional<double> nu_end;   ///< end of the unloading branch; default: lowest of keep_unloading, else nu_start [-]
   int rows = 200;                 ///< rows of each branch's series (besides the first)
 };

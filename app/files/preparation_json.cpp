@@ -128,14 +128,14 @@ void complete_preparation(dem::PreparationOptions& o, const std::string& name) {
   // the densest state tells a reader of the branches' series which packing they belong to
   if (o.keep_loading.empty() && o.keep_unloading.empty()) o.keep_loading.push_back(o.nu_max);
   for (const double nu : o.keep_loading) {
-    if (nu <= o.nu_start || nu > o.nu_max) {
-      refuse(fmt::format("densities: {} is not on the loading branch (nu_start, nu_max] = ({}, {}]", nu, o.nu_start,
+    if (nu < o.nu_start || nu > o.nu_max) {
+      refuse(fmt::format("densities: {} is not on the loading branch [nu_start, nu_max] = [{}, {}]", nu, o.nu_start,
                          o.nu_max));
     }
   }
   for (const double nu : o.keep_unloading) {
-    if (nu < *o.nu_end || nu >= o.nu_max) {
-      refuse(fmt::format("densities: {} is not on the unloading branch [nu_end, nu_max) = [{}, {})", nu, *o.nu_end,
+    if (nu < *o.nu_end || nu > o.nu_max) {
+      refuse(fmt::format("densities: {} is not on the unloading branch [nu_end, nu_max] = [{}, {}]", nu, *o.nu_end,
                          o.nu_max));
     }
   }

@@ -120,7 +120,7 @@ TEST(SpecFile, TestsBecomePathsAndNames) {
 
 TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
   EXPECT_EQ(refusal_of(R"({"densities": [0.85]})"),
-            "s.json: densities: 0.85 is not on the unloading branch [nu_end, nu_max) = [0.66, 0.82)");
+            "s.json: densities: 0.85 is not on the unloading branch [nu_end, nu_max] = [0.66, 0.82]");
   EXPECT_EQ(refusal_of(R"({"nu_start": 0.7, "nu_max": 0.69})"), "s.json: nu_max: 0.69 must lie above nu_start = 0.7");
   EXPECT_NE(refusal_of(R"({"nu_end": 0.63})").find("s.json: nu_end: "), std::string::npos);
   EXPECT_NE(refusal_of(R"({"contact_viscosity": 1e6})").find("s.json: contact_viscosity: "), std::string::npos);

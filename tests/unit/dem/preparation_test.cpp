@@ -70,6 +70,27 @@ TEST(Preparation, KeepsTheRequestedStatesRelaxedAndInOrder) {
   EXPECT_EQ(result.order, order);
 }
 
+TEST(Preparation, KeepsTheEndsOfItsBranchesToo) {
+  PreparationOptions options = small_options();
+  options.keep_loading = {options.nu_start, options.nu_max};
+  options.keep_unloading = {options.nu_start, options.nu_max};
+  const Prepared result = prepare(options);
+  ASSERT_EQ(result.kept.size(), 4u);
+  const std::vector<double> densities{0.64, 0.74, 0.74, 0.64};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(result.kept[i].nu, densities[i]);
+    EXPECT_EQ(result.kept[i].branch, i < 2 ? Branch::loading : Branch::unloading);
+    EXPECT_NEAR(volume_fraction(result.kept[i].state.packing), densities[i], 1e-14);
+  }
+  // both sides of the turn: one step of the branch lies between them
+  const auto &before = result.kept[1].state.packing.sx, &after = result.kept[2].state.packing.sx;
+  double apart = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    apart = std::max(apart, std::abs(std::remainder(before[i] - after[i], 1.0)));
+  }
+  EXPECT_LT(apart, 1e-3);
+}
+
 TEST(Preparation, SeriesCoverTheBranches) {
   const Prepared result = prepare(small_options());
   const auto& loading = result.series.at(Branch::loading);
@@ -134,9 +155,9 @@ TEST(Preparation, RefusesDensitiesOutOfRange) {
   EXPECT_TRUE(refusal([](auto& o) { o.nu_max = 0.95; }).starts_with("nu_gas, nu_start, nu_max"));
   EXPECT_TRUE(refusal([](auto& o) { o.nu_start = 0.2; }).starts_with("nu_gas, nu_start, nu_max"));
   EXPECT_TRUE(refusal([](auto& o) { o.nu_max = std::nan(""); }).starts_with("nu_gas, nu_start, nu_max"));
-  EXPECT_TRUE(refusal([](auto& o) { o.keep_loading = {0.64}; }).starts_with("densities"));
+  EXPECT_TRUE(refusal([](auto& o) { o.keep_loading = {0.639}; }).starts_with("densities"));
   EXPECT_TRUE(refusal([](auto& o) { o.keep_loading = {0.75}; }).starts_with("densities"));
-  EXPECT_TRUE(refusal([](auto& o) { o.keep_unloading = {0.74}; }).starts_with("densities"));
+  EXPECT_TRUE(refusal([](auto& o) { o.keep_unloading = {0.741}; }).starts_with("densities"));
   EXPECT_TRUE(refusal([](auto& o) { o.keep_unloading = {0.6}; }).starts_with("densities"));
   EXPECT_TRUE(refusal([](auto& o) { o.keep_unloading = {std::nan("")}; }).starts_with("densities"));
   EXPECT_TRUE(refusal([](auto& o) { o.nu_end = 0.6; }).starts_with("nu_end"));
