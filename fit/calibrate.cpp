@@ -7,83 +7,16 @@
 #include <limits>
 
 #include "fit/data_set.hpp"
-#include "fit/density_fit.hpp"
 #include "fit/density_law_fit.hpp"
 #include "fit/evolution_fit.hpp"
 #include "fit/memory_fit.hpp"
 #include "fit/outliers.hpp"
-#include "fit/shear_fit.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {
 
 constexpr double kNoError = std::numeric_limits<double>::quiet_NaN();
-
-/// Later stages replace what earlier ones said of a parameter.
-void record(Calibration& calibration, const StageFit& fit) {
-  calibration.stages.push_back(fit.stage);
-  std::vector<Eigen::Index> index;
-  for (const NamedEstimate& e : fit.stage.estimates) {
-    index.push_back(static_cast<Eigen::Index>(parameter_index(e.name)));
-    calibration.estimates[static_cast<std::size_t>(index.back())] = e.estimate;
-    calibration.covariance.row(index.back()).setZero();
-    calibration.covariance.col(index.back()).setZero();
-  }
-  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
-    for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) {
-      calibration.covariance(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]) =
-          fit.covariance(i, j);
-    }
-  }
-}
-
-void fit_isotropic(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
-                   const RunControl& control) {
-  const std::vector<DensitySeries> series = isotropic_series(data, options);
-  const std::string window = fmt::format("ISO unloading, nu >= {:g}", options.iso_nu_min);
-  LawParameters<double>& law = calibration.parameters;
-  const std::vector<StageFit> state_law = fit_state_law("", series, window, law.isotropic, options, control);
-  for (const StageFit& fit : state_law) record(calibration, fit);
-  const StageFit overlap = fit_overlap(series, window, state_law.back(), law.overlap_D, options, control);
-  if (overlap.solution.defined) law.overlap_D = overlap.solution.x(0);
-  record(calibration, overlap);
-  const StageFit trace = fit_fabric_trace(series, window, law.fabric_g3, options, control);
-  law.fabric_g3 = trace.solution.x(0);
-  record(calibration, trace);
-}
-
-void fit_steady(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
-                const RunControl& control) {
-  const std::vector<DensitySeries> series = steady_series(data, options);
-  const std::string window = fmt::format("means of D2 over eps_dev >= {:g}, one row per test", options.steady_from);
-  if (!series.empty()) {
-    for (const StageFit& fit :
-         fit_state_law("steady_", series, window, calibration.parameters.steady, options, control)) {
-      record(calibration, fit);
-    }
-    return;
-  }
-  const std::string remedy = fmt::format("no D2 test reaches eps_dev = {:g}; shear further", options.steady_from);
-  record(calibration,
-         skipped_stage("steady_coordination",
-                       {"steady_coordination.C1", "steady_coordination.alpha", "steady_coordination.nu_c"}, remedy));
-  record(calibration, skipped_stage("steady_rattlers", {"steady_rattlers.phi_c", "steady_rattlers.phi_v"}, remedy));
-  record(calibration, skipped_stage("steady_pressure",
-                                    {"steady_pressure.p0", "steady_pressure.gamma_p", "steady_pressure.nu_c"}, remedy));
-}
-
-void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
-                    const RunControl& control) {
-  Stage stage;
-  calibration.shear = fit_shear_tests(data, calibration.parameters.isotropic.pressure.nu_c, options, control, stage);
-  calibration.stages.push_back(stage);
-  std::vector<int> cluster;
-  for (const TestRecord* test : data.pure_shear) cluster.push_back(cluster_of(data, *test));
-  for (const ShearQuantity& quantity : kShearQuantities) {
-    record(calibration,
-           fit_density_law(quantity, calibration.shear, cluster, calibration.parameters, options, control));
-  }
-}
 
 /// Laws of Eq. (20) of which not one shear test says anything.
 std::vector<std::string> unseen_laws(const std::vector<ShearFit>& shear) {
@@ -151,16 +84,12 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
                       const RunControl& control) {
   check(options);
   const DataSet data = check_and_sort(tests);
-  Calibration calibration;
+  Calibration calibration = nothing_known();
   calibration.coupling = options.coupling;
-  calibration.parameters = start_parameters();
-  calibration.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
   calibration.unused_tests = data.unused;
   calibration.warnings = outlier_warnings(data, options);
-  calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c, kNoError, Status::fixed,
-                                                          "degenerate with Q_c and alpha of Eq. (20)"};
-  fit_isotropic(data, calibration, options, control);
-  fit_steady(data, calibration, options, control);
+  fit_unloading_laws("ISO unloading", isotropic_series(data, options), calibration, options, control);
+  fit_steady_laws(Mode::D2, data, calibration, options, control);
   fit_shear_laws(data, calibration, options, control);
   const std::vector<Trajectory> trajectories =
       trajectories_of(data, calibration.parameters.isotropic.pressure.nu_c, options);
@@ -169,8 +98,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   set_anisotropy(trajectories, calibration, options);
   fit_memory_rung(trajectories, calibration, options, control);
   set_ranges(trajectories, calibration);
-  calibration.converged = std::all_of(calibration.stages.begin(), calibration.stages.end(),
-                                      [](const Stage& stage) { return stage.converged; });
+  calibration.converged = all_converged(calibration);
   return calibration;
 }
 

@@ -18,9 +18,10 @@ namespace {
   throw InvalidInput(fmt::format("test {}: {}", test.name, why));
 }
 
-void check_test(const TestRecord& test) {
-  if (test.role != Role::calibration) {
-    refuse(test, "its role is validation; the calibration must not see it, leave it out");
+void check_test(const TestRecord& test, Role role) {
+  if (test.role != role) {
+    refuse(test,
+           fmt::format("its role is {}; the {} must not see it, leave it out", to_string(test.role), to_string(role)));
   }
   if (test.path.segments.empty()) refuse(test, "its path has no segments");
   if (test.rows.size() < 2) refuse(test, fmt::format("it has {} rows; at least 2 are needed", test.rows.size()));
@@ -83,13 +84,13 @@ std::vector<const TestRecord*> DataSet::all_used() const {
   return all;
 }
 
-DataSet check_and_sort(const std::vector<TestRecord>& tests) {
+DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
   DataSet data;
   std::set<std::string> names;
   std::map<StressKey, Place> seen;
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const TestRecord& test = tests[i];
-    check_test(test);
+    check_test(test, role);
     if (!names.insert(test.name).second) refuse(test, "this name is given twice; rename one of the tests");
     for (std::size_t j = 0; j < i; ++j) {
       if (same_series(test, tests[j])) {
@@ -106,6 +107,7 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests) {
     else
       data.unused.push_back(test.name);
   }
+  if (role != Role::calibration) return data;
   if (data.isotropic.empty()) {
     throw InvalidInput("calibration: no test is an isotropic unloading; add {\"mode\": \"ISO\"} to the tests");
   }

@@ -17,10 +17,11 @@ struct DataSet {
   std::vector<const TestRecord*> all_used() const;
 };
 
-/// Points into `tests`. Throws InvalidInput naming test, row and column, with the remedy, for: a validation test, no
+/// Points into `tests`, all of `role`. Throws InvalidInput naming test, row and column, with the remedy, for: another role, no
 /// rows, a name given twice, one series under two names, one row in tests of two seeds, a packing without size or
-/// stiffness; rows that contradict themselves or the path (row_checks.hpp); no ISO unloading or no shear at constant volume.
-DataSet check_and_sort(const std::vector<TestRecord>& tests);
+/// stiffness; rows that contradict themselves or the path (row_checks.hpp); for a calibration: no ISO unloading or no shear
+/// at constant volume.
+DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role = Role::calibration);
 
 /// Independent of one another are runs from different kept states: one number per (seed, branch, nu at the start).
 int cluster_of(const DataSet& data, const TestRecord& test);

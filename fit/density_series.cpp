@@ -45,21 +45,28 @@ DensityPoint mean(const std::vector<DensityPoint>& points) {
 
 bool is_jammed(const Observation& row) { return row.P_star > kUnjammedPressure; }
 
-std::vector<DensitySeries> isotropic_series(const DataSet& data, const CalibrationOptions& options) {
+std::vector<DensitySeries> unloading_series(const std::vector<const TestRecord*>& tests, const DataSet& data,
+                                            const CalibrationOptions& options) {
   std::vector<DensitySeries> all;
-  std::size_t points = 0;
-  for (const TestRecord* test : data.isotropic) {
+  for (const TestRecord* test : tests) {
     DensitySeries series{test->name, cluster_of(data, *test), 0, {}};
     for (std::size_t i = 0; i < test->rows.size(); ++i) {
       const Observation& row = test->rows[i];
-      if (row.nu >= options.iso_nu_min && is_jammed(row))
+      const PathSegment& segment = test->path.segments.at(static_cast<std::size_t>(row.segment));
+      if (segment.direction.tensor.trace() > 0 && row.nu >= options.iso_nu_min && is_jammed(row))
         series.points.push_back(point_of(*test, i));
       else
         ++series.excluded;
     }
-    points += series.points.size();
-    all.push_back(series);
+    if (!series.points.empty()) all.push_back(series);
   }
+  return all;
+}
+
+std::vector<DensitySeries> isotropic_series(const DataSet& data, const CalibrationOptions& options) {
+  const std::vector<DensitySeries> all = unloading_series(data.isotropic, data, options);
+  std::size_t points = 0;
+  for (const DensitySeries& series : all) points += series.points.size();
   if (points < 4) {
     throw InvalidInput(
         fmt::format("test {}: the ISO unloading tests have {} jammed rows with nu >= {}; unload from a higher "
@@ -69,10 +76,10 @@ std::vector<DensitySeries> isotropic_series(const DataSet& data, const Calibrati
   return all;
 }
 
-std::vector<DensitySeries> steady_series(const DataSet& data, const CalibrationOptions& options) {
+std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const CalibrationOptions& options) {
   std::vector<DensitySeries> all;
   for (const TestRecord* test : data.pure_shear) {
-    if (test->path.segments.front().mode != Mode::D2) continue;
+    if (test->path.segments.front().mode != mode) continue;
     DensitySeries series{test->name, cluster_of(data, *test), 0, {}};
     std::vector<DensityPoint> steady;
     for (std::size_t i = 0; i < test->rows.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// What the density laws are fitted to: rows of the ISO unloading branch, and steady means of shear at constant volume.
+// What the density laws are fitted to: rows of unloading branches, and steady means of shear at constant volume.
 
 #include <string>
 #include <vector>
@@ -27,12 +27,16 @@ struct DensitySeries {
   std::vector<DensityPoint> points;
 };
 
-/// Rows of the ISO unloading tests with nu >= iso_nu_min. Throws InvalidInput naming test, row and column when a
-/// coordination number or rattler fraction of a jammed row is missing, or when no row is in the window.
+/// Rows of those segments of `tests` in which the volume grows, with nu >= iso_nu_min; tests without any are absent. Throws
+/// InvalidInput naming test, row and column when a coordination number or rattler fraction of a jammed row is missing.
+std::vector<DensitySeries> unloading_series(const std::vector<const TestRecord*>& tests, const DataSet& data,
+                                            const CalibrationOptions& options);
+
+/// Those of the ISO unloading tests. Throws InvalidInput, too, when no four rows are in the window.
 std::vector<DensitySeries> isotropic_series(const DataSet& data, const CalibrationOptions& options);
 
-/// One point per D2 test: means over eps_dev >= steady_from. Tests that end before, or are not jammed there, are absent.
-std::vector<DensitySeries> steady_series(const DataSet& data, const CalibrationOptions& options);
+/// One point per test of `mode` at constant volume: means over eps_dev >= steady_from. Tests that end before, or are not jammed there, are absent.
+std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const CalibrationOptions& options);
 
 /// A row without a network that carries: contacts may exist, P* is below what any jammed state here has.
 bool is_jammed(const Observation& row);

@@ -43,7 +43,7 @@ TEST(DensitySeries, SteadyPointIsTheMeanFromSteadyStrainOn) {
       row.C = (1 - row.rattler_fraction) * row.C_star;
     }
   }
-  const std::vector<DensitySeries> series = steady_series(check_and_sort(tests), {});
+  const std::vector<DensitySeries> series = steady_series(check_and_sort(tests), Mode::D2, {});
   ASSERT_EQ(series.size(), 4u);
   for (const DensitySeries& s : series) {
     ASSERT_EQ(s.points.size(), 1u);
@@ -59,14 +59,14 @@ TEST(DensitySeries, SteadyPointsComeFromD2Alone) {
                       .test("d3", 1, 0.70, {testing::synthetic_segment(Mode::D3, ExtentKind::eps_dev, 0.30)}));
   const DataSet data = check_and_sort(tests);
   EXPECT_EQ(data.pure_shear.size(), 5u);
-  const std::vector<DensitySeries> series = steady_series(data, {});
+  const std::vector<DensitySeries> series = steady_series(data, Mode::D2, {});
   EXPECT_EQ(series.size(), 4u);
   for (const DensitySeries& s : series) EXPECT_NE(s.test, "d3");
 }
 
 TEST(DensitySeries, TestsThatEndEarlyHaveNoSteadyPoint) {
   const std::vector<TestRecord> tests = records(0.10);
-  EXPECT_TRUE(steady_series(check_and_sort(tests), {}).empty());
+  EXPECT_TRUE(steady_series(check_and_sort(tests), Mode::D2, {}).empty());
 }
 
 TEST(DensitySeries, MissingCoordinationOfAJammedRowIsNamed) {

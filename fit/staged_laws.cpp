@@ -1,0 +1,95 @@
+#include "fit/staged_laws.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "fit/density_fit.hpp"
+#include "fit/density_law_fit.hpp"
+#include "fit/shear_fit.hpp"
+
+namespace grainlaw::fit {
+
+Calibration nothing_known() {
+  Calibration calibration;
+  calibration.parameters = start_parameters();
+  calibration.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
+  calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c,
+                                                          std::numeric_limits<double>::quiet_NaN(), Status::fixed,
+                                                          "degenerate with Q_c and alpha of Eq. (20)"};
+  return calibration;
+}
+
+void record(Calibration& calibration, const StageFit& fit) {
+  calibration.stages.push_back(fit.stage);
+  std::vector<Eigen::Index> index;
+  for (const NamedEstimate& e : fit.stage.estimates) {
+    index.push_back(static_cast<Eigen::Index>(parameter_index(e.name)));
+    calibration.estimates[static_cast<std::size_t>(index.back())] = e.estimate;
+    calibration.covariance.row(index.back()).setZero();
+    calibration.covariance.col(index.back()).setZero();
+  }
+  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
+    for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) {
+      calibration.covariance(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]) =
+          fit.covariance(i, j);
+    }
+  }
+}
+
+void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
+                        const CalibrationOptions& options, const RunControl& control) {
+  const std::string window = fmt::format("{}, nu >= {:g}", branch, options.iso_nu_min);
+  LawParameters<double>& law = calibration.parameters;
+  const std::vector<StageFit> state_law = fit_state_law("", series, window, law.isotropic, options, control);
+  for (const StageFit& fit : state_law) record(calibration, fit);
+  const StageFit overlap = fit_overlap(series, window, state_law.back(), law.overlap_D, options, control);
+  if (overlap.solution.defined) law.overlap_D = overlap.solution.x(0);
+  record(calibration, overlap);
+  const StageFit trace = fit_fabric_trace(series, window, law.fabric_g3, options, control);
+  law.fabric_g3 = trace.solution.x(0);
+  record(calibration, trace);
+}
+
+void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
+                     const RunControl& control) {
+  const std::vector<DensitySeries> series = steady_series(data, mode, options);
+  const std::string window =
+      fmt::format("means of {} over eps_dev >= {:g}, one row per test", to_string(mode), options.steady_from);
+  if (!series.empty()) {
+    for (const StageFit& fit :
+         fit_state_law("steady_", series, window, calibration.parameters.steady, options, control)) {
+      record(calibration, fit);
+    }
+    return;
+  }
+  const std::string remedy =
+      fmt::format("no {} test reaches eps_dev = {:g}; shear further", to_string(mode), options.steady_from);
+  record(calibration,
+         skipped_stage("steady_coordination",
+                       {"steady_coordination.C1", "steady_coordination.alpha", "steady_coordination.nu_c"}, remedy));
+  record(calibration, skipped_stage("steady_rattlers", {"steady_rattlers.phi_c", "steady_rattlers.phi_v"}, remedy));
+  record(calibration, skipped_stage("steady_pressure",
+                                    {"steady_pressure.p0", "steady_pressure.gamma_p", "steady_pressure.nu_c"}, remedy));
+}
+
+void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
+                    const RunControl& control) {
+  Stage stage;
+  calibration.shear = fit_shear_tests(data, calibration.parameters.isotropic.pressure.nu_c, options, control, stage);
+  calibration.stages.push_back(stage);
+  std::vector<int> cluster;
+  for (const TestRecord* test : data.pure_shear) cluster.push_back(cluster_of(data, *test));
+  for (const ShearQuantity& quantity : kShearQuantities) {
+    record(calibration,
+           fit_density_law(quantity, calibration.shear, cluster, calibration.parameters, options, control));
+  }
+}
+
+bool all_converged(const Calibration& calibration) {
+  return std::all_of(calibration.stages.begin(), calibration.stages.end(),
+                     [](const Stage& stage) { return stage.converged; });
+}
+
+}  // namespace grainlaw::fit
