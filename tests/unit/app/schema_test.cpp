@@ -33,7 +33,9 @@ TEST(SchemaCheck, NamesFileKeyReasonAndRemedyInOneLine) {
   EXPECT_NE(refusal_of(R"({"xyzzy": 5})").find("s.json: unknown key 'xyzzy'; known keys: background_viscosity, "),
             std::string::npos);
   EXPECT_EQ(refusal_of(R"({"tests": [{"mode": "D2"}]})"),
-            "s.json: tests[0]: misses the key 'role'; give calibration tests are fitted, validation tests never");
+            "s.json: tests[0]: misses the key 'role'; give calibration tests are fitted, validation tests never, "
+            "description tests "
+            "by laws of their own");
   EXPECT_EQ(refusal_of(R"({"driving": "sine"})"),
             "s.json: driving: got \"sine\"; give \"cosine\" or \"constant\" (profile of the strain rate in time)");
   EXPECT_EQ(
