@@ -12,7 +12,7 @@ namespace grainlaw::fit {
 
 struct Description {
   std::string name;         ///< "UNI", "D3", "D2-loading"
-  Calibration calibration;  ///< only the laws that the tests speak of are identified
+  Calibration calibration;  ///< only the laws that the tests speak of are identified; nu_min, nu_max of their rows
 };
 
 /// One for each of these modes that the tests, all of role description, contain with rows enough:

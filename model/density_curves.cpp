@@ -26,9 +26,9 @@ const std::vector<DensityCurve>& density_curves() {
   return curves;
 }
 
-std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, double nu_min, double nu_max, int per_unit) {
+std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, const LawParameters<double>& published,
+                                     double nu_min, double nu_max, int per_unit) {
   constexpr double slack = 1e-9;
-  const LawParameters<double> published = published_parameters();
   std::vector<CurvePoint> points;
   for (const DensityCurve& curve : density_curves()) {
     for (double k = std::ceil((nu_min - slack) * per_unit); k / per_unit <= nu_max + slack; ++k) {

@@ -24,10 +24,11 @@ struct CurvePoint {
   const DensityCurve* curve = nullptr;
   double nu = 0;         ///< volume fraction [-]
   double ours = 0;       ///< from the given parameters [-]
-  double published = 0;  ///< from the published parameters [-]
+  double published = 0;  ///< likewise from the published ones [-]
 };
 
 /// Every curve at every multiple of 1/`per_unit` within [nu_min, nu_max] (to rounding), curve by curve.
-std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, double nu_min, double nu_max, int per_unit = 50);
+std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, const LawParameters<double>& published,
+                                     double nu_min, double nu_max, int per_unit = 50);
 
 }  // namespace grainlaw

@@ -95,6 +95,10 @@ LawParameters<double> start_parameters();
 /// may begin from it.
 LawParameters<double> published_parameters();
 
+/// Likewise with the rows of Table 2 for a mode that the calibrated law does not read: "UNI" in place of ISO, "D3" in
+/// place of D2. As above for any other name.
+LawParameters<double> published_parameters(const std::string& mode);
+
 /// Scalar conversion, e.g. to a dual number with zero derivative.
 template <class T>
 LawParameters<T> cast(const LawParameters<double>& p) {

@@ -1,12 +1,11 @@
 #pragma once
 // Student's t distribution: how many standard errors an interval reaches to either side when the error itself is known
-// from few packings. Its tail is a regularised incomplete beta function (Abramowitz & Stegun, 26.7.1):
-//   P(|T| > t) = I_x(n/2, 1/2),   x = n/(n + t^2),   n the degrees of freedom
+// from few packings.
 
 namespace grainlaw {
 
-/// t with P(T <= t) = `probability`, 0.5 <= probability < 1. `degrees_of_freedom` >= 0.1, not necessarily whole; from 1e8
-/// on, infinity included, the normal distribution's. Throws InvalidInput otherwise.
+/// t with P(T <= t) = `probability`, 0.5 <= probability < 1. `degrees_of_freedom` >= 0.1, not necessarily whole;
+/// infinity: the normal distribution's. Throws InvalidInput otherwise.
 double student_quantile(double probability, double degrees_of_freedom);
 
 /// Standard errors on either side of a 95 % interval.

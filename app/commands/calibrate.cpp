@@ -13,6 +13,7 @@
 #include "app/files/spec_file.hpp"
 #include "app/output_folder.hpp"
 #include "app/report/report.hpp"
+#include "app/verdicts.hpp"
 #include "dem/durable_file.hpp"
 #include "fit/calibrate.hpp"
 #include "model/error.hpp"
@@ -50,10 +51,10 @@ fs::path dataset_folder(const fs::path& given) {
   throw InvalidInput(fmt::format("{}: holds no dataset.json; give the folder of a data set", given.string()));
 }
 
-std::vector<TestRecord> calibration_tests(const Dataset& dataset) {
+std::vector<TestRecord> tests_of(const Dataset& dataset, Role role) {
   std::vector<TestRecord> tests;
   for (const DatasetTest& test : dataset.tests) {
-    if (test.record.role == Role::calibration) tests.push_back(test.record);
+    if (test.record.role == role) tests.push_back(test.record);
   }
   return tests;
 }
@@ -114,10 +115,15 @@ ExitCode fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& opt
                       const RunCounts& counts, Session& session) {
   session.progress.begin({1}, "");
   const fit::Calibration calibration =
-      fit::calibrate(calibration_tests(dataset), options, session.progress.control(0, "fit", session.stop));
+      fit::calibrate(tests_of(dataset, Role::calibration), options, session.progress.control(0, "fit", session.stop));
+  ModeComparison modes;
+  modes.descriptions =
+      fit::describe(tests_of(dataset, Role::description), calibration.parameters.isotropic.pressure.nu_c, options,
+                    session.progress.control(0, "fit of the other modes", session.stop));
+  modes.verdicts = verdicts_of(calibration, modes.descriptions, dataset.seeds.size());
   session.progress.end();
   const OrderedJson origin = provenance(session.command, session.threads, session.stopwatch);
-  write_calibration(output / "calibration.json", calibration, options, dataset.digest, origin);
+  write_calibration(output / "calibration.json", calibration, options, modes, dataset.digest, origin);
   write_parameters(output / "parameters.json", {calibration, dataset.digest, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {
     if (!stage.converged)
@@ -140,7 +146,7 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   if (!options.dataset.empty()) {
     from = dataset_folder(options.dataset);
     given = read_dataset(from);
-    check_tests(calibration_tests(*given), from.string());
+    check_tests(tests_of(*given, Role::calibration), from.string());
   }
   if (!options.spec.empty()) {
     spec = read_spec(options.spec);

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/files/estimate_json.hpp"
 #include "app/one_line.hpp"
+#include "fit/curve_error.hpp"
 #include "model/density_curves.hpp"
 #include "model/error.hpp"
 
@@ -110,25 +112,77 @@ fit::ShearFit shear_from_json(const Json& object) {
   return shear;
 }
 
-/// Ours beside the published curves; null where the data do not determine ours.
-OrderedJson curves_to_json(const fit::Calibration& calibration) {
+/// Ours beside the published curves of `mode`; null where the data do not determine ours.
+OrderedJson curves_to_json(const fit::Calibration& calibration, const std::string& mode) {
   OrderedJson curves = OrderedJson::array();
-  for (const CurvePoint& point : curve_points(calibration.parameters, calibration.nu_min, calibration.nu_max)) {
+  for (const CurvePoint& point :
+       curve_points(calibration.parameters, published_parameters(mode), calibration.nu_min, calibration.nu_max)) {
     const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
                                    [&](const char* group) { return fit::has_values(calibration, group); });
+    const double error = known ? fit::standard_error(calibration, *point.curve, point.nu) : std::nan("");
     curves.push_back({{"quantity", point.curve->quantity},
                       {"nu", point.nu},
                       {"ours", known ? number_or_null(point.ours) : OrderedJson()},
+                      {"standard_error", number_or_null(error)},
                       {"published", number_or_null(point.published)}});
   }
   return curves;
 }
 
+OrderedJson stages_to_json(const fit::Calibration& calibration) {
+  OrderedJson stages = OrderedJson::array();
+  for (const fit::Stage& stage : calibration.stages) stages.push_back(stage_to_json(stage));
+  return stages;
+}
+
+OrderedJson shears_to_json(const fit::Calibration& calibration) {
+  OrderedJson shear = OrderedJson::array();
+  for (const fit::ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
+  return shear;
+}
+
+/// `object` holds "stages" and "shear".
+void read_stages(const Json& object, fit::Calibration& calibration) {
+  for (const Json& stage : object.at("stages")) calibration.stages.push_back(stage_from_json(stage));
+  for (const Json& shear : object.at("shear")) calibration.shear.push_back(shear_from_json(shear));
+}
+
+OrderedJson description_to_json(const fit::Description& d) {
+  return {{"name", d.name},
+          {"stages", stages_to_json(d.calibration)},
+          {"shear", shears_to_json(d.calibration)},
+          {"curves", curves_to_json(d.calibration, d.name)}};
+}
+
+OrderedJson verdict_to_json(const Verdict& v) {
+  return {{"mode", v.mode},
+          {"quantity", v.quantity},
+          {"nu", v.is_parameter ? OrderedJson() : OrderedJson(v.nu)},
+          {"ours", number_or_null(v.ours)},
+          {"standard_error", number_or_null(v.standard_error)},
+          {"published", v.published},
+          {"distance", number_or_null(v.distance)},
+          {"verdict", v.verdict}};
+}
+
+Verdict verdict_from_json(const Json& object) {
+  const bool is_parameter = object.at("nu").is_null();
+  return {object.at("mode"),
+          object.at("quantity"),
+          is_parameter,
+          is_parameter ? 0 : object.at("nu").get<double>(),
+          number_or_nan(object.at("ours")),
+          number_or_nan(object.at("standard_error")),
+          object.at("published"),
+          number_or_nan(object.at("distance")),
+          object.at("verdict")};
+}
+
 }  // namespace
 
 void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
-                       const fit::CalibrationOptions& options, const std::string& dataset_digest,
-                       const OrderedJson& provenance) {
+                       const fit::CalibrationOptions& options, const ModeComparison& modes,
+                       const std::string& dataset_digest, const OrderedJson& provenance) {
   OrderedJson document;
   document["format"] = "grainlaw calibration";
   document["format_version"] = 1;
@@ -140,22 +194,29 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
                          {"pressure_scale", options.pressure_scale}, {"stress_scale", options.stress_scale},
                          {"fabric_scale", options.fabric_scale}};
   document["dataset_digest"] = dataset_digest;
-  OrderedJson& stages = document["stages"] = OrderedJson::array();
-  for (const fit::Stage& stage : calibration.stages) stages.push_back(stage_to_json(stage));
-  OrderedJson& shear = document["shear"] = OrderedJson::array();
-  for (const fit::ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
-  document["curves"] = curves_to_json(calibration);
+  document["stages"] = stages_to_json(calibration);
+  document["shear"] = shears_to_json(calibration);
+  document["curves"] = curves_to_json(calibration, "");
+  OrderedJson& descriptions = document["descriptions"] = OrderedJson::array();
+  for (const fit::Description& d : modes.descriptions) descriptions.push_back(description_to_json(d));
+  OrderedJson& verdicts = document["verdicts"] = OrderedJson::array();
+  for (const Verdict& v : modes.verdicts) verdicts.push_back(verdict_to_json(v));
   document["unused_tests"] = calibration.unused_tests;
   document["warnings"] = calibration.warnings;
   document["provenance"] = provenance;
   write_json(file, document);
 }
 
-void read_calibration(const std::filesystem::path& file, fit::Calibration& calibration) {
+ModeComparison read_calibration(const std::filesystem::path& file, fit::Calibration& calibration) {
   const Json document = read_json(file, JsonSource::own);
+  ModeComparison modes;
   try {
-    for (const Json& stage : document.at("stages")) calibration.stages.push_back(stage_from_json(stage));
-    for (const Json& shear : document.at("shear")) calibration.shear.push_back(shear_from_json(shear));
+    read_stages(document, calibration);
+    for (const Json& object : document.at("descriptions")) {
+      modes.descriptions.push_back({object.at("name"), {}});
+      read_stages(object, modes.descriptions.back().calibration);
+    }
+    for (const Json& verdict : document.at("verdicts")) modes.verdicts.push_back(verdict_from_json(verdict));
     calibration.unused_tests = document.at("unused_tests").get<std::vector<std::string>>();
     calibration.warnings = document.at("warnings").get<std::vector<std::string>>();
   } catch (const Json::exception& error) {
@@ -164,6 +225,7 @@ void read_calibration(const std::filesystem::path& file, fit::Calibration& calib
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", one_line(file.string(), 200), error.what()));
   }
+  return modes;
 }
 
 }  // namespace grainlaw::app

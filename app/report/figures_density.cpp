@@ -44,18 +44,27 @@ void add_isotropic_symbols(Panel& panel, const ReportInput& input, Quantity y) {
   }
 }
 
-void add_steady_symbols(Panel& panel, const ReportInput& input, double fit::ShearFit::*y) {
+Series steady_symbols(const std::vector<fit::ShearFit>& fits, Mode mode, double fit::ShearFit::*y, Colour colour,
+                      Marker marker) {
   Series series;
-  series.label = plain("steady D2, DEM (mean per run)");
-  series.colour = Colour::vermillion;
-  series.marker = Marker::square;
+  series.label = plain("steady " + to_string(mode) + ", DEM (mean per run)");
+  series.colour = colour;
+  series.marker = marker;
   series.marker_size = 3.2;
-  for (const fit::ShearFit& shear : input.calibration.shear) {
-    if (shear.mode != Mode::D2) continue;
+  for (const fit::ShearFit& shear : fits) {
+    if (shear.mode != mode) continue;
     series.x.push_back(shear.nu);
     series.y.push_back(shear.*y);
   }
-  panel.series.push_back(series);
+  return series;
+}
+
+void add_steady_symbols(Panel& panel, const ReportInput& input, double fit::ShearFit::*y) {
+  panel.series.push_back(steady_symbols(input.calibration.shear, Mode::D2, y, Colour::vermillion, Marker::square));
+  for (const fit::Description& d : input.modes.descriptions) {
+    if (d.name != "D3") continue;
+    panel.series.push_back(steady_symbols(d.calibration.shear, Mode::D3, y, Colour::green, Marker::diamond));
+  }
 }
 
 struct Range {

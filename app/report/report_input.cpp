@@ -85,7 +85,7 @@ ReportInput read_report_input(const fs::path& dir) {
   ReportInput input;
   ParametersFile parameters = with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); });
   input.calibration = parameters.calibration;
-  with_remedy(calibrate, [&] { read_calibration(dir / "calibration.json", input.calibration); });
+  with_remedy(calibrate, [&] { input.modes = read_calibration(dir / "calibration.json", input.calibration); });
   add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.dataset_digest, input);
   add_facts(parameters.provenance, "", "parameters.json", input.provenance);
 

@@ -119,6 +119,14 @@ Page make_page(const ReportInput& input) {
                   "values. The curves are what should be compared.")),
         table_html(curve_comparison(calibration, CurveGroup::law)) +
             table_html(curve_comparison(calibration, CurveGroup::steady_state))}});
+  if (!input.modes.verdicts.empty()) {
+    page.sections.push_back(
+        {"published",
+         "Beside the published numbers, mode by mode",
+         {table_html(jamming_table(input.modes.verdicts)),
+          folded("Curves: which agree", table_html(verdict_table(input.modes.verdicts, false))),
+          folded("Parameters: which agree", table_html(verdict_table(input.modes.verdicts, true)))}});
+  }
   page.sections.push_back({"state",
                            "Pressure, coordination and rattlers",
                            {figure_html(density_figure(input)), figure_html(scaled_density_figure(input))}});

@@ -1,5 +1,5 @@
 #pragma once
-// The tables of the report: ours beside what Imole et al. (2013) published, without a verdict.
+// The tables of the report: ours beside what Imole et al. (2013) published.
 
 #include <string>
 
@@ -13,6 +13,10 @@ Table parameter_comparison(const fit::Calibration& calibration);
 /// What the parameters mean: C*, phi_r, P*, s_max, beta_s, F_max, beta_F at round densities of the calibrated range.
 enum class CurveGroup { law, steady_state };
 Table curve_comparison(const fit::Calibration& calibration, CurveGroup which);
+/// Every verdict on a parameter, or on a curve, mode by mode.
+Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters);
+/// nu_c of the modes, both ways.
+Table jamming_table(const std::vector<Verdict>& verdicts);
 /// Stages of the fit: window, sizes, costs, termination.
 Table stage_table(const fit::Calibration& calibration);
 /// Misfit of the coupled fit per test and quantity.

@@ -69,19 +69,22 @@ Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
     return std::string_view(curve.quantity).starts_with("steady_") == (which == CurveGroup::steady_state);
   };
   Table table;
-  table.caption = which == CurveGroup::law ? "The law's curves: ours, and the difference from the published curve in brackets"
-                                           : "Steady state of shear (not read by the law), likewise";
+  table.caption = which == CurveGroup::law
+                      ? "The law's curves: ours, and the difference from the published curve in brackets"
+                      : "Steady state of shear (not read by the law), likewise";
   table.source = "parameters.json";
   table.columns = {quantity(notation("{ν}"))};
   std::map<double, std::vector<Text>> rows;
-  for (const CurvePoint& point : curve_points(calibration.parameters, calibration.nu_min, calibration.nu_max)) {
+  for (const CurvePoint& point :
+       curve_points(calibration.parameters, published_parameters(), calibration.nu_min, calibration.nu_max)) {
     if (!shown(*point.curve)) continue;
     const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
                                    [&](const char* group) { return fit::has_values(calibration, group); });
     std::vector<Text>& row = rows[point.nu];
     if (row.empty()) row.push_back(plain(fixed(point.nu, 2)));
-    row.push_back(plain(known ? significant_padded(point.ours, 4) + " (" + percent_difference(point.ours, point.published) + ")"
-                              : "not identified"));
+    row.push_back(
+        plain(known ? significant_padded(point.ours, 4) + " (" + percent_difference(point.ours, point.published) + ")"
+                    : "not identified"));
   }
   for (const DensityCurve& curve : density_curves()) {
     if (shown(curve)) table.columns.push_back(quantity(notation(curve.symbol)));

@@ -47,7 +47,7 @@ class ReportFolder : public ::testing::Test {
     const Dataset dataset = write_tests(dir_ / "dataset", scene.tests);
     scene.calibration.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
     write_parameters(dir_ / "parameters.json", {scene.calibration, dataset.digest, Json{{"version", "0.1.0"}}});
-    write_calibration(dir_ / "calibration.json", scene.calibration, {}, dataset.digest, {{"version", "0.1.0"}});
+    write_calibration(dir_ / "calibration.json", scene.calibration, {}, {}, dataset.digest, {{"version", "0.1.0"}});
     for (PredictionFolder& prediction : scene.predictions) {
       const fs::path folder = dir_ / "predictions" / prediction.name;
       prediction.dem = write_tests(folder / "dem", report::dem_records(prediction));

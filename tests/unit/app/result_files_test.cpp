@@ -265,7 +265,7 @@ TEST_F(ResultFiles, DoubtfulParametersAreRefused) {
 
 TEST_F(ResultFiles, CalibrationIsReadBack) {
   const fit::Calibration c = odd_calibration();
-  write_calibration(folder_ / "calibration.json", c, {}, std::string(64, 'c'), {{"command", "test"}});
+  write_calibration(folder_ / "calibration.json", c, {}, {}, std::string(64, 'c'), {{"command", "test"}});
   fit::Calibration read;
   read_calibration(folder_ / "calibration.json", read);
   ASSERT_EQ(read.stages.size(), 1u);

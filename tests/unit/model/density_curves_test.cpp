@@ -37,12 +37,12 @@ TEST(DensityCurves, ReadTheParametersOfTheirGroupsAndNoOthers) {
 }
 
 TEST(DensityCurves, PointsCoverTheRangeEndsIncluded) {
-  const auto points = curve_points(published_parameters(), 0.68, 0.82);
+  const auto points = curve_points(published_parameters(), published_parameters(), 0.68, 0.82);
   EXPECT_EQ(points.size(), 8 * density_curves().size());  // .68 .70 ... .82
   for (const CurvePoint& point : points) EXPECT_EQ(point.ours, point.published);
   EXPECT_NEAR(points.front().nu, 0.68, 1e-12);
   EXPECT_NEAR(points.back().nu, 0.82, 1e-12);
-  EXPECT_EQ(curve_points(published_parameters(), 0.681, 0.699).size(), 0u);
+  EXPECT_EQ(curve_points(published_parameters(), published_parameters(), 0.681, 0.699).size(), 0u);
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+#pragma once
+// Standard error of a curve over density, from the covariance of its parameters by the delta method: g^T V g, g the
+// gradient of the curve. Stages are fitted one after the other, so V has no terms between them but what they inherit; where
+// a curve joins stages (P* by Eq. (14) reads C* and phi_r) errors of theirs are added as if independent.
+
+#include "fit/calibrate.hpp"
+#include "model/density_curves.hpp"
+
+namespace grainlaw::fit {
+
+/// At volume fraction `nu`; NaN when a parameter that the curve reads has no error.
+double standard_error(const Calibration& calibration, const DensityCurve& curve, double nu);
+
+}  // namespace grainlaw::fit
