@@ -87,7 +87,11 @@ void add_predict(CLI::App& app, Common& common, Task& task) {
   command->add_option("PARAMETERS", options->parameters, "parameters.json of a calibration")->required();
   command->add_option("PATH", options->path, "PATH.json")->required();
   command->add_option("-o,--output", options->output, "folder of the prediction")->required();
-  command->add_flag("--dem", options->dem, "run the path in the engine on new packings and compare");
+  CLI::Option* dem = command->add_flag("--dem", options->dem, "run the path in the engine on new packings and compare");
+  command
+      ->add_option("--against", options->against,
+                   "compare with finished runs of the path: the folder of a data set, or of a prediction with --dem")
+      ->excludes(dem);
   command
       ->add_option("--model", options->model,
                    "rung of the law: reduced, evolution or memory; default: those that are calibrated")

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "app/adopted_dataset.hpp"
 #include "app/dataset_runs.hpp"
 #include "app/files/calibration_file.hpp"
 #include "app/files/dataset.hpp"
@@ -14,7 +15,6 @@
 #include "app/output_folder.hpp"
 #include "app/report/report.hpp"
 #include "app/verdicts.hpp"
-#include "dem/durable_file.hpp"
 #include "fit/calibrate.hpp"
 #include "model/error.hpp"
 
@@ -23,32 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Copies a data set of elsewhere into the calibration's folder, so that the folder is complete.
-Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  if (fs::equivalent(from, to, error)) return dataset;
-  for (const DatasetTest& test : dataset.tests) {
-    const std::string file = test.record.name + ".csv";
-    dem::copy_durably(from / file, to / file);
-    if (!test.probes_sha256.empty())
-      dem::copy_durably(from / kProbesFolder / file, make_subfolder(to, kProbesFolder) / file);
-  }
-  dem::copy_durably(from / "dataset.json", to / "dataset.json");
-  return read_dataset(to);
-}
-
 /// Parameters of another spec must not stay beside this one's data, should the work be interrupted.
 void remove_results_of_others(const fs::path& output, const std::string& spec) {
   std::ifstream file(output / "spec.resolved.json", std::ios::binary);
   if (std::string{std::istreambuf_iterator<char>(file), {}} == spec) return;
   for (const char* name : {"parameters.json", "calibration.json"}) fs::remove(output / name);
-}
-
-/// The folder itself, or its dataset/ when a calibration's folder was given.
-fs::path dataset_folder(const fs::path& given) {
-  if (fs::exists(given / "dataset.json")) return given;
-  if (fs::exists(given / "dataset" / "dataset.json")) return given / "dataset";
-  throw InvalidInput(fmt::format("{}: holds no dataset.json; give the folder of a data set", given.string()));
 }
 
 std::vector<TestRecord> tests_of(const Dataset& dataset, Role role) {

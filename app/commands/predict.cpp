@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "app/adopted_dataset.hpp"
 #include "app/digest.hpp"
 #include "app/files/parameters_file.hpp"
 #include "app/files/path_file.hpp"
@@ -32,7 +33,8 @@ std::vector<Rung> rungs_of(const PredictOptions& options, const ParametersFile& 
 
 std::vector<Initial> initials_of(const PredictOptions& options) {
   if (options.initial) return {*options.initial};
-  return options.dem ? std::vector{Initial::law, Initial::measured} : std::vector{Initial::law};
+  const bool has_runs = options.dem || !options.against.empty();
+  return has_runs ? std::vector{Initial::law, Initial::measured} : std::vector{Initial::law};
 }
 
 /// The law with everything that a curve needs besides its start and its points.
@@ -165,8 +167,8 @@ std::string text_of(const Law& law, const PredictionFolder& content, const fs::p
 }  // namespace
 
 ExitCode run_prediction(const PredictOptions& options, Session& session) {
-  if (options.initial == Initial::measured && !options.dem) {
-    throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem too");
+  if (options.initial == Initial::measured && !options.dem && options.against.empty()) {
+    throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem or --against too");
   }
   const ParametersFile parameters = read_parameters(options.parameters);
   const PathFile path = read_path(options.path);
@@ -193,6 +195,14 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
     plan(*spec, path, new_seeds(*spec, path, options.seeds, options.path.string()), options.path.string());
   }
 
+  std::optional<Dataset> finished;
+  fs::path from;
+  if (!options.against.empty()) {
+    from = dataset_folder(options.against);
+    finished = read_dataset(from);
+    require_runs_of(path.path, *finished, from.string());
+  }
+
   make_output_folder(options.output);
   PredictionFolder content;
   content.name = options.output.filename().string();
@@ -201,6 +211,7 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
                         {"sha256", sha256_of_file(options.parameters)},
                         {"dataset_digest", parameters.dataset_digest}};
   if (options.dem) content.dem = run_dem(options, *spec, path, session);
+  if (finished) content.dem = adopt(*finished, from, make_subfolder(options.output, "dem"));
   if (options.initial != Initial::measured) add_free_curves(law, content);
   if (content.dem) add_compared_curves(law, options, content);
   content.provenance = Json(provenance(session.command, session.threads, session.stopwatch));

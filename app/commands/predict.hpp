@@ -1,6 +1,6 @@
 #pragma once
-// grainlaw predict PARAMETERS.json PATH.json -o DIR: the calibrated law along a strain path, and with --dem the same
-// path in the engine on new packings, and how far apart they are.
+// grainlaw predict PARAMETERS.json PATH.json -o DIR: the calibrated law along a strain path, and how far it is from runs
+// of the same path: with --dem in the engine on new packings, with --against finished ones.
 
 #include <cstdint>
 #include <filesystem>
@@ -18,8 +18,9 @@ struct PredictOptions {
   std::filesystem::path path;        ///< PATH.json
   std::filesystem::path output;      ///< folder of the prediction
   std::optional<Rung> model;         ///< none: reduced, evolution, and memory where it is calibrated
-  std::optional<Initial> initial;    ///< none: law, and measured too with `dem`
+  std::optional<Initial> initial;    ///< none: law, and measured too with `dem` or `against`
   bool dem = false;                  ///< run the path in the engine too
+  std::filesystem::path against;     ///< data set with runs of the path; empty: none
   std::vector<std::uint64_t>
       seeds;                    ///< of the new packings; empty: PATH's, else as many as calibrated, following those
   std::filesystem::path spec;   ///< SPEC of the packings; empty: spec.resolved.json beside `parameters`

@@ -50,6 +50,20 @@ code=0
 "$grainlaw" predict out/parameters.json path.json -o alone --model evolution >/dev/null
 [[ -s alone/evolution-law.csv && ! -e alone/reduced-law.csv && ! -e alone/comparison.json ]] || fail "prediction alone"
 
+
+# the same comparison with the finished runs alone, which may lie anywhere; runs of another path are refused
+"$grainlaw" predict refit/parameters.json path.json -o again --against out/predictions/uni >/dev/null 2>log || fail "--against: $(cat log)"
+"$grainlaw" predict out/parameters.json path.json -o same --against out/predictions/uni/dem >/dev/null
+diff <(jq .comparisons same/comparison.json) <(jq .comparisons out/predictions/uni/comparison.json) || fail "--against differs from --dem"
+[[ -s same/dem/UNI-0.72-s3.csv ]] || fail "no copy of the runs"
+code=0
+"$grainlaw" predict out/parameters.json path.json -o bad --against out 2>err || code=$?
+[[ $code == 2 ]] && grep -q 'is of role calibration' err && [[ ! -e bad ]] || fail "calibration tests were compared with"
+sed 's/0.80/0.79/' path.json >other.json
+code=0
+"$grainlaw" predict out/parameters.json other.json -o bad --against out/predictions/uni 2>err || code=$?
+[[ $code == 2 ]] && grep -q 'follows another path' err && [[ ! -e bad ]] || fail "runs of another path were compared with"
+
 "$grainlaw" report out -o report.html >table.txt
 [[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report
 find . -name '.*tmp*' | grep -q . && fail "temporary files left"

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# examples/paper/run.sh [OUT]: all data of the paper at its own size, with five packings: preparation, element tests, law,
+# new packings for the uniaxial predictions, report. Installs what is missing, builds Release, writes to OUT
+# (./grainlaw-paper). Finished simulations in OUT are reused, interrupted ones go on. OUT/held-out and OUT/dataset are
+# what examples/paper/data holds; examples/paper/refit.sh goes on from there without simulating.
+set -euo pipefail
+
+here=$(dirname "${BASH_SOURCE[0]}")
+# shellcheck source=examples/chain.sh
+. "$here/../chain.sh"
+out=$(realpath -m "${1:-grainlaw-paper}")
+inputs=$(realpath "$here")
+run_chain "$here" "$out" --dem
+# the same cycle at the tenth of the rate, for the energy ratio (Fig. 3)
+grainlaw simulate "$inputs/slow/cycle.json" -o "$out/slow-cycle" >/dev/null
