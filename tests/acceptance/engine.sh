@@ -6,22 +6,9 @@
 # Run it alone: speeds are measured side by side on a pinned core. The first run prepares packings (two minutes).
 set -euo pipefail
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-cd "$here/../.."
-# shellcheck source=tests/acceptance/figures.sh
-. "$here/figures.sh"
-quick=no
-case $#:${1:-} in
-  0:) ;;
-  1:--quick) quick=yes ;;
-  *) sed -n 's/^# //; 2,6p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
-esac
-
-./install-packages.sh >&2
-cmake --preset release --log-level=WARNING >&2
-cmake --build build/release --parallel "$(nproc)" >&2
-bin=build/release/bin
-out=$PWD/build/acceptance/engine
+# shellcheck source=tests/acceptance/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
+out+=/engine
 mkdir -p "$out"
 
 quotient() { awk -v a="$1" -v b="$2" 'BEGIN { print (a ~ /^[0-9.e+-]+$/ && b + 0 > 0) ? a / b : "missing" }'; }

@@ -2,52 +2,12 @@
 # tests/acceptance/ground.sh [--quick]: what makes the ground firm, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
 # --quick: hard cases but the long ones, restart points, hashes over threads, the referee. Otherwise also the long hard
-# cases, kills and injected faults, full disks, a sample of 60 mutants (MUTANTS=N: N), coverage, and the paper-size example (reused from
-# build/acceptance/ when finished).
+# cases, kills and injected faults, full disks, a sample of 60 mutants (MUTANTS=N: N), coverage, and the paper-size example
+# (reused from build/acceptance/ when finished).
 set -euo pipefail
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-cd "$here/../.."
-# shellcheck source=tests/acceptance/figures.sh
-. "$here/figures.sh"
-quick=no
-case $#:${1:-} in
-  0:) ;;
-  1:--quick) quick=yes ;;
-  *) sed -n 's/^# //; 2,7p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
-esac
-
-./install-packages.sh >&2
-cmake --preset release --log-level=WARNING >&2
-cmake --build build/release --parallel "$(nproc)" >&2
-bin=build/release/bin
-out=$PWD/build/acceptance
-mkdir -p "$out"
-
-# Each line of hard_cases.txt is run; a case counts as passed when all its tests ran and passed.
-hard_cases() {
-  local id executable filter listed=0 passed=0 log
-  : >"$out/hard_cases.figures"
-  while read -r id executable filter; do
-    [[ -z $id || $id == \#* ]] && continue
-    filter=${filter//\'/}
-    [[ $quick == yes && $executable == long ]] && continue
-    listed=$((listed + 1))
-    if log=$("$bin/$executable" --gtest_filter="$filter" 2>&1) && grep -q '^\[  PASSED  \] [1-9]' <<<"$log" &&
-       ! grep -q '^\[  SKIPPED \]' <<<"$log"; then
-      passed=$((passed + 1))
-    else
-      figure "hard_case.$id" failed stated
-    fi
-    grep '^figure ' <<<"$log" >>"$out/hard_cases.figures" || true
-    grep '^count ' <<<"$log" | sed 's/^count //' >>"$out/hard_cases.figures" || true
-  done <"$here/hard_cases.txt"
-  while read -r _ name value bound; do figure "$name" "$value" "<=$bound"; done \
-    < <(grep '^figure ' "$out/hard_cases.figures" | sort -u -k2,2)
-  figure hard_cases.listed "$listed" stated
-  figure hard_cases.passed "$passed" ">=$listed"
-  figure restart_points.bitwise "$(value_of R5.restart_points "$out/hard_cases.figures")" ">=100"
-}
+# shellcheck source=tests/acceptance/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
 
 # Runs one of tests/survival; its log is kept.
 survival() { # script VARIABLE=value...
@@ -104,7 +64,8 @@ paper_size() {
   figure paper_size.seconds "$(sed -n 's/^Whole chain after the build: \([0-9]*\) s.*/\1/p' "$out/paper-size.txt")" stated
 }
 
-hard_cases
+hard_cases DORF
+figure restart_points.bitwise "$(value_of R5.restart_points "$out/hard_cases.figures")" ">=100"
 referee
 if [[ $quick == no ]]; then
   mishaps

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# tests/acceptance/law.sh [OUT]: the rungs of the law against DEM runs that the calibration never saw, one line each:
+# tests/acceptance/law.sh [--quick]: the rungs of the law against DEM runs that the calibration never saw, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
-# OUT holds, or gets, what examples/law/run.sh makes (default build/acceptance/law). From the measured start, mean over seeds:
+# --quick: hard cases of the integration and the study of integrators. Otherwise also the moduli of small-strain probes and
+# what examples/law/run.sh makes (both reused from build/acceptance/ when finished). From the measured start, mean over seeds:
 #   PATH.RUNG.QUANTITY.bias, .rms      bias, and RMS over the largest |DEM|, per rung
 #   PATH.memory.K.s, .F                strain to the sign change in segment K, law over DEM minus 1
 #   PATH.memory.K.dip                  least P* of segment K over that at its corner, law minus DEM
@@ -9,13 +10,9 @@
 # Bounds are the goals of the memory rung; the other rungs are stated.
 set -euo pipefail
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-out=$(realpath -m "${1:-$here/../../build/acceptance/law}")
-cd "$here/../.."
-# shellcheck source=tests/acceptance/figures.sh
-. "$here/figures.sh"
-if [[ ! -s $out/report.html ]]; then examples/law/run.sh "$out" >&2; fi
-bin=build/release/bin
+# shellcheck source=tests/acceptance/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
+law=$out/law
 
 # The goal for a quantity of a path: of memory alone.
 goal() { # path rung quantity kind
@@ -50,7 +47,7 @@ reversals() { # folder of a prediction
       if [[ $rung == memory ]]; then case $name in *.dip) bound="<=0.03" ;; *) bound="<=0.15" ;; esac; fi
       if [[ $bound == stated ]]; then figure "$path.$rung.$name" "$value" stated
       else figure "$path.$rung.|$name|" "$(magnitude "$value")" "$bound"; fi
-    done < <(paste -d' ' <(awk -f "$here/reversals.awk" "$1/$rung"-measured-s*.csv) <(awk -f "$here/reversals.awk" "$1"/dem/*.csv) |
+    done < <(paste -d' ' <(awk -f tests/acceptance/reversals.awk "$1/$rung"-measured-s*.csv) <(awk -f tests/acceptance/reversals.awk "$1"/dem/*.csv) |
       awk '{ printf "%d.s %.4f\n%d.F %.4f\n%d.dip %.5f\n", $2, $4 / $12 - 1, $2, $6 / $14 - 1, $2, $8 - $16 }')
   done
 }
@@ -68,8 +65,8 @@ dilatancy() {
   folder=$(mktemp -d)
   for nu in 0.68 0.70 0.74 0.80; do
     printf '{"initial": {"nu": %s}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.26}}]}' "$nu" >"$folder/path.json"
-    "$bin/grainlaw" predict "$out/parameters.json" "$folder/path.json" -o "$folder/$nu" --quiet >/dev/null
-    dem=$(rise "$out"/dataset/D2-$nu-s*.csv)
+    "$bin/grainlaw" predict "$law/parameters.json" "$folder/path.json" -o "$folder/$nu" --quiet >/dev/null
+    dem=$(rise "$law"/dataset/D2-$nu-s*.csv)
     figure "dilatancy.DEM.$nu" "$dem" stated
     for rung in evolution memory; do
       figure "dilatancy.$rung.$nu" "$(awk -v a="$(rise "$folder/$nu/$rung-law.csv")" -v b="$dem" 'BEGIN { print a - b }')" stated
@@ -78,7 +75,31 @@ dilatancy() {
   rm -rf "$folder"
 }
 
-for folder in "$out"/predictions/*/; do
+integrators() {
+  local study=$out/study_integrator panel least
+  taskset -c 0 "$bin/grainlaw" study integrator -o "$study" --quiet >/dev/null
+  for panel in smooth reversal near-unjamming; do
+    figure "within_1e-6.adams.$panel.microseconds" "$(jq -r --arg p "$panel" '.panels[] | select(.path == $p)
+      | .["quickest_within_1e-6"][] | select(.integrator == "adams") | .microseconds' "$study/study.json")" \
+      "$([[ $panel == smooth ]] && echo "<=60" || echo stated)"
+    least=$(jq -r --arg p "$panel" '.panels[] | select(.path == $p) | .["quickest_within_1e-6"]
+      | min_by(.microseconds) | "\(.integrator) \(.microseconds)"' "$study/study.json")
+    figure "within_1e-6.${least% *}.$panel.microseconds" "${least#* }" "$([[ $panel == smooth ]] && echo "<=15" || echo stated)"
+  done
+  figure batch.paths_per_second "$(jq -r '[.batch[].paths_per_second] | max' "$study/study.json")" stated
+}
+
+probes() {
+  tests/acceptance/probes.sh "$bin/grainlaw" "$out/probes" >"$out/probes.txt"
+  while read -r name value; do figure "probes.$name" "$value" stated; done <"$out/probes.txt"
+}
+
+hard_cases O
+integrators
+if [[ $quick == yes ]]; then finish_figures; exit; fi
+probes
+if [[ ! -s $law/report.html ]]; then examples/law/run.sh "$law" >&2; fi
+for folder in "$law"/predictions/*/; do
   held_out "${folder%/}"
   case $folder in *cyclic*) reversals "${folder%/}" ;; esac
 done

@@ -5,21 +5,8 @@
 # finished), and the cost of the chain.
 set -euo pipefail
 
-here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-cd "$here/../.."
-# shellcheck source=tests/acceptance/figures.sh
-. "$here/figures.sh"
-quick=no
-case $#:${1:-} in
-  0:) ;;
-  1:--quick) quick=yes ;;
-  *) sed -n 's/^# //; 2,5p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
-esac
-
-./install-packages.sh >&2
-cmake --preset release --log-level=WARNING >&2
-cmake --build build/release --parallel "$(nproc)" >&2
-bin=build/release/bin
+# shellcheck source=tests/acceptance/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
 
 hard_cases() {
   figures_of_tests $bin/verification_dem '*.D1RestitutionOf*:*.D3*' D1.max D1.rms D1.mean D1.small D3
@@ -34,8 +21,7 @@ hard_cases() {
 }
 
 quickstart() {
-  local out=$PWD/build/acceptance/quickstart cost=build/acceptance/quickstart.cost
-  mkdir -p build/acceptance
+  local out=$out/quickstart cost=$out/quickstart.cost
   if [[ ! -s $out/report.html || ! -s $cost ]]; then
     rm -rf "$out"
     /usr/bin/time --quiet --format '%e %M' --output "$cost.new" examples/quickstart/run.sh "$out" >&2
@@ -62,7 +48,7 @@ quickstart() {
 hard_cases
 if [[ $quick == no ]]; then
   quickstart
-  "$here/driving_modes.sh" "$bin/grainlaw" build/acceptance/driving_modes >build/acceptance/driving_modes.txt
+  tests/acceptance/driving_modes.sh "$bin/grainlaw" "$out/driving_modes" >"$out/driving_modes.txt"
   while read -r name value; do figure "driving.$name" "$value" stated; done <build/acceptance/driving_modes.txt
 fi
 finish_figures

@@ -1,0 +1,45 @@
+# Sourced by the acceptance scripts as `. setup.sh "$@"`: reads their one option, builds Release as a user would, and defines
+#   quick (yes or no), bin (the executables), out (build/acceptance), and the functions of figures.sh and below.
+
+script=$(realpath "$0")
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+# shellcheck source=tests/acceptance/figures.sh
+. tests/acceptance/figures.sh
+quick=no
+case $#:${1:-} in
+  0:) ;;
+  1:--quick) quick=yes ;;
+  *) awk 'NR > 1 { if (!sub(/^# /, "")) exit; print }' "$script" >&2; exit 2 ;;
+esac
+
+./install-packages.sh >&2
+cmake --preset release --log-level=WARNING >&2
+cmake --build build/release --parallel "$(nproc)" >&2
+bin=build/release/bin
+out=$PWD/build/acceptance
+mkdir -p "$out"
+
+# Runs the lines of hard_cases.txt whose id begins with one of the letters (long ones not with --quick); a line is passed
+# when all its tests ran and passed. Figures: those of the tests, and hard_cases.listed, hard_cases.passed.
+hard_cases() { # letters
+  local id executable filter listed=0 passed=0 log figures=$out/hard_cases.figures
+  : >"$figures"
+  while read -r id executable filter; do
+    [[ $id == ["$1"]* ]] || continue
+    filter=${filter//\'/}
+    [[ $quick == yes && $executable == long ]] && continue
+    listed=$((listed + 1))
+    if log=$("$bin/$executable" --gtest_filter="$filter" 2>&1) && grep -q '^\[  PASSED  \] [1-9]' <<<"$log" &&
+       ! grep -q '^\[  SKIPPED \]' <<<"$log"; then
+      passed=$((passed + 1))
+    else
+      figure "hard_case.$id" failed stated
+    fi
+    grep '^figure ' <<<"$log" >>"$figures" || true
+    grep '^count ' <<<"$log" | sed 's/^count //' >>"$figures" || true
+  done < <(grep -v '^#' tests/acceptance/hard_cases.txt)
+  while read -r _ name value bound; do figure "$name" "$value" "<=$bound"; done \
+    < <(grep '^figure ' "$figures" | sort -u -k2,2)
+  figure hard_cases.listed "$listed" stated
+  figure hard_cases.passed "$passed" ">=$listed"
+}
