@@ -1,7 +1,8 @@
 // The engine beside Debian's LAMMPS, in turn, on the same packing, the same path and the same number of steps:
 //   bench_engine [--particles N] [--tiles T] [--steps K] [--threads T] [--warm-up K] [--nu NU]... FOLDER
-// Packings are prepared once and kept in FOLDER, then sheared by D2 for the steps of the warm-up before the race begins; --tiles repeats the packing T times along each axis. Prints figures "NAME VALUE" for scripts and a line for readers. Run it
-// alone on one pinned core (taskset -c 1); two cores for --threads 2.
+// Packings are prepared once and kept in FOLDER, then sheared by D2 for the steps of the warm-up before the race begins;
+// --tiles repeats the packing T times along each axis; --threads T > 1 races T threads against one. Prints figures
+// "NAME VALUE". Run it alone, on one pinned core (taskset -c 1) unless there are threads.
 
 #include <fmt/format.h>
 
@@ -201,14 +202,19 @@ int main(int argc, char** argv) try {
     const dem::State state = tiled(warmed_up(packing_at(folder, particles, nu), warm_up), static_cast<int>(tiles));
     const std::size_t all = state.packing.size();
     dem::EngineOptions options;
-    options.threads = threads;
     const double work = 1e-6 * static_cast<double>(all) * steps;  // 10^6 particle-steps
     std::map<std::string, Result> results;
     for (const auto& [name, precision] :
          {std::pair{"mixed", dem::Precision::mixed}, {"double", dem::Precision::full}, {"reference", dem::Precision::reference}}) {
       if (precision == dem::Precision::reference && tiles > 1) continue;
       options.precision = precision;
+      options.threads = 1;
       results[name] = run_engine(state, options, steps);
+      if (threads == 1) continue;
+      const double alone = results[name].seconds;
+      options.threads = threads;
+      results[name] = run_engine(state, options, steps);
+      fmt::print("speedup.{}.N{}.threads{}.nu{:.2f} {:.3f}\n", name, all, threads, nu, alone / results[name].seconds);
     }
     const double dt = options.time_step_fraction * dem::min_collision_time(state.packing, state.material);
     if (!without_lammps) results["lammps"] = run_lammps(folder / "lammps", state, dt, steps);

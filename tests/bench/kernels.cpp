@@ -3,6 +3,8 @@
 #include <benchmark/benchmark.h>
 
 #include <array>
+#include <cstdint>
+#include <numeric>
 #include <string>
 
 #include "dem/lane_list.hpp"
@@ -64,12 +66,28 @@ void per_sphere(benchmark::State& state) {
                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+/// Cycles per nanosecond, by additions that wait for each other.
+void clock_rate(benchmark::State& state) {
+  constexpr int kAdditions = 1000;
+  for (auto _ : state) {
+    std::uint64_t x = 0;
+    for (int i = 0; i < kAdditions; ++i) {
+      x += static_cast<std::uint64_t>(i);
+      asm volatile("" : "+r"(x));  // one at a time
+    }
+  }
+  state.counters["GHz"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * kAdditions * 1e-9, benchmark::Counter::kIsRate);
+}
+
 template <class Real>
 void force_and_kick_pass(benchmark::State& state, const std::string& target) {
   use_vector_target(target);
   Scene<Real> scene;
   for (auto _ : state) benchmark::DoNotOptimize(force_and_kick(scene.lanes, scene.step, 0, scene.lanes.group.size()));
   per_sphere(state);
+  const auto& rungs = scene.lanes.near_count;
+  state.counters["rungs/sphere"] = std::accumulate(rungs.begin(), rungs.end(), 0.0) / kSpheres;
   use_vector_target("");
 }
 
@@ -114,6 +132,7 @@ void register_all(const std::string& precision, const std::string& target) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  benchmark::RegisterBenchmark("clock", clock_rate);
   for (const std::string& target : vector_targets()) {
     register_all<float>("mixed", target);
     register_all<double>("double", target);
