@@ -11,6 +11,7 @@
 #include "app/commands/calibrate.hpp"
 #include "app/commands/predict.hpp"
 #include "app/commands/simulate.hpp"
+#include "app/commands/study_dem.hpp"
 #include "app/commands/study_integrator.hpp"
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
@@ -128,8 +129,21 @@ void add_report(CLI::App& app, Common& common, Task& task) {
   });
 }
 
+void add_study_dem(CLI::App& study, Common& common, Task& task) {
+  CLI::App* command =
+      study.add_subcommand("dem", "what settings of the engine cost and how far they are from a reference");
+  auto options = std::make_shared<StudyDemOptions>();
+  command->add_option("SPEC", options->spec, "SPEC.json, the setting that is judged")->required();
+  command->add_option("-o,--output", options->output, "folder for study.json, settings.svg and runs")->required();
+  command->add_option("--reference", options->reference, "KEY=VALUE of SPEC that make the reference")->required();
+  command->add_option("--vary", options->vary, "KEY=VALUE of SPEC, one setting each")->required();
+  add_checkpoints(*command, common);
+  add_common(*command, common);
+  command->callback([options, &task] { task = [options](Session& session) { return study_dem(*options, session); }; });
+}
+
 void add_study(CLI::App& app, Common& common, Task& task) {
-  CLI::App* study = app.add_subcommand("study", "measurements of the program itself: integrator");
+  CLI::App* study = app.add_subcommand("study", "measurements of the program itself: integrator, dem");
   study->require_subcommand(1);
   study->footer(kExitCodes);
   CLI::App* command = study->add_subcommand("integrator", "what integrating a path costs at which error");
@@ -145,6 +159,7 @@ void add_study(CLI::App& app, Common& common, Task& task) {
   add_common(*command, common);
   command->callback(
       [options, &task] { task = [options](Session& session) { return study_integrator(*options, session); }; });
+  add_study_dem(*study, common, task);
 }
 
 int fail(ExitCode code, const std::string& message) {

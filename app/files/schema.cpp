@@ -181,7 +181,8 @@ struct Schemas {
                                       {Schema::test, "test.schema.json"},
                                       {Schema::dataset, "dataset.schema.json"},
                                       {Schema::parameters, "parameters.schema.json"},
-                                      {Schema::study, "study.schema.json"}}) {
+                                      {Schema::study, "study.schema.json"},
+                                      {Schema::study_dem, "study_dem.schema.json"}}) {
       whole[which] = load(file);
       for_library[which] = without_unique_items(whole[which]);
     }
