@@ -35,17 +35,14 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
   const auto estimate = [&](const char* name) -> Estimate& { return calibration.estimates[parameter_index(name)]; };
   if (options.coupling == Coupling::energy) {
     estimate("anisotropy.a0") = {0, kNoError, Status::not_identified, "not part of the law with coupling energy"};
-    const Estimate a1 = tied_a1(trajectories, calibration.parameters, estimate("anisotropy.a2"), options);
-    estimate("anisotropy.a1") = a1;
-    if (a1.status == Status::tied) {
-      calibration.parameters.anisotropy.a1 = a1.value;
-      const auto i = static_cast<Eigen::Index>(parameter_index("anisotropy.a1"));
-      const auto j = static_cast<Eigen::Index>(parameter_index("anisotropy.a2"));
-      Eigen::MatrixXd& V = calibration.covariance;
-      V.row(i) = V.row(j) * (2. / 3);
-      V.col(i) = V.row(i).transpose();
-      V(i, i) = std::isfinite(a1.standard_error) ? a1.standard_error * a1.standard_error : 0;
-    }
+    const auto i = static_cast<Eigen::Index>(parameter_index("anisotropy.a1"));
+    const auto j = static_cast<Eigen::Index>(parameter_index("anisotropy.a2"));
+    const TiedCoupling tied = tied_a1(trajectories, calibration.parameters, estimate("anisotropy.a2"),
+                                      calibration.errors.influence.row(j), options);
+    estimate("anisotropy.a1") = tied.a1;
+    if (tied.a1.status == Status::tied) calibration.parameters.anisotropy.a1 = tied.a1.value;
+    calibration.errors.influence.row(i) = tied.influence;
+    calibration.errors.degrees_of_freedom(i) = tied.a1.degrees_of_freedom;
   } else {
     estimate("anisotropy.a1") = {0, kNoError, Status::not_identified, "not part of the law with coupling single"};
     estimate("anisotropy.a2") = {0, kNoError, Status::not_identified, "not part of the law with coupling single"};
@@ -63,7 +60,7 @@ void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& c
            no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state"));
     return;
   }
-  record(calibration, fit_memory(trajectories, calibration.parameters, options, control));
+  record(calibration, fit_memory(trajectories, calibration.parameters, options, control, calibration.errors));
 }
 
 void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibration) {
@@ -84,7 +81,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
                       const RunControl& control) {
   check(options);
   const DataSet data = check_and_sort(tests);
-  Calibration calibration = nothing_known();
+  Calibration calibration = nothing_known(packing_count(data));
   calibration.coupling = options.coupling;
   calibration.unused_tests = data.unused;
   calibration.warnings = outlier_warnings(data, options);
@@ -93,10 +90,11 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   fit_shear_laws(data, calibration, options, control);
   const std::vector<Trajectory> trajectories =
       trajectories_of(data, calibration.parameters.isotropic.pressure.nu_c, options);
-  record(calibration,
-         fit_evolution(trajectories, calibration.parameters, unseen_laws(calibration.shear), options, control));
+  record(calibration, fit_evolution(trajectories, calibration.parameters, unseen_laws(calibration.shear), options,
+                                    control, calibration.errors));
   set_anisotropy(trajectories, calibration, options);
   fit_memory_rung(trajectories, calibration, options, control);
+  calibration.covariance = calibration.errors.covariance();
   set_ranges(trajectories, calibration);
   calibration.converged = all_converged(calibration);
   return calibration;

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fit/inherited_error.hpp"
 #include "fit/options.hpp"
 #include "fit/outcome.hpp"
 #include "model/parameters.hpp"
@@ -25,6 +26,7 @@ struct Calibration {
   Coupling coupling = Coupling::energy;
   LawParameters<double> parameters;                 ///< not identified ones stay at their start and must not be read
   std::array<Estimate, kParameterCount> estimates;  ///< in the order of parameter_table()
+  FoundErrors errors;                               ///< by packing; not in parameters.json
   Eigen::MatrixXd covariance;                       ///< kParameterCount square, zero where there is no error
   std::vector<Stage> stages;                        ///< in order of computation
   std::vector<ShearFit> shear;                      ///< in the order of the tests

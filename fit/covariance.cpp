@@ -4,13 +4,22 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace grainlaw::fit {
 namespace {
 
 constexpr double kNullPart = 1e-4;      // component along a null direction beyond which a parameter is not determined
-constexpr double kCarriedByOne = 0.05;  // share of a parameter's variance along directions that one run carries
+constexpr double kCarriedByOne = 0.05;  // share of a parameter's variance along directions that one packing carries
+
+std::vector<Eigen::Index> columns_of(const std::vector<bool>& free) {
+  std::vector<Eigen::Index> columns;
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    if (free[k]) columns.push_back(static_cast<Eigen::Index>(k));
+  }
+  return columns;
+}
 
 /// H^+ = L L^T for H = J^T J, by the singular values of J with its columns scaled to one.
 struct Factor {
@@ -43,37 +52,62 @@ Factor factor_of(const Eigen::MatrixXd& J) {
   return factor;
 }
 
-constexpr Eigen::Index kPieces = 10;  // of a run: longer than the correlation of its rows, short enough to be many
+/// What a packing shows in the coordinates of L.
+struct Packing {
+  Eigen::MatrixXd Q;      ///< information, eigenvalues are those of its leverage J_c H^+ J_c^T
+  Eigen::MatrixXd power;  ///< (1 - Q)^(-1/2), zero along directions that it carries alone
+  Eigen::MatrixXd alone;  ///< these directions, orthonormal columns
+  Eigen::VectorXd g;      ///< power J_c^T r_c
+};
 
-/// sum of g g^T over the pieces of a run, g = J^T r of a piece; the run is cut in the order of its rows.
-Eigen::MatrixXd products_of_pieces(const Eigen::MatrixXd& J, const Eigen::VectorXd& misfit, Eigen::Index together) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(J.cols(), J.cols());
-  const Eigen::Index groups = (J.rows() + together - 1) / together;
-  for (Eigen::Index k = 0; k < kPieces; ++k) {
-    const Eigen::Index begin = k * groups / kPieces * together;
-    const Eigen::Index n = std::min((k + 1) * groups / kPieces * together, J.rows()) - begin;
-    const Eigen::VectorXd g = J.middleRows(begin, n).transpose() * misfit.segment(begin, n);
-    sum += g * g.transpose();
+Packing packing_of(const Eigen::MatrixXd& J_L, const Eigen::VectorXd& misfit) {
+  Packing packing;
+  packing.Q = J_L.transpose() * J_L;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage(packing.Q);
+  std::vector<Eigen::Index> alone;
+  Eigen::VectorXd power(J_L.cols());
+  for (Eigen::Index k = 0; k < power.size(); ++k) {
+    const double h = leverage.eigenvalues()(k);
+    power(k) = h < kLargestLeverage ? 1 / std::sqrt(1 - h) : 0;
+    if (h >= kLargestLeverage) alone.push_back(k);
   }
-  return sum;
+  const Eigen::MatrixXd& W = leverage.eigenvectors();
+  packing.power = W * power.asDiagonal() * W.transpose();
+  packing.alone = W(Eigen::all, alone);
+  packing.g = packing.power * (J_L.transpose() * misfit);
+  return packing;
+}
+
+/// Of the variance of u^T g, u a row of L: g_cd = delta_cd a_c^T Q_c a_c - (Q_c a_c)^T (Q_d a_d), a_c = power_c u.
+double satterthwaite(const std::map<int, Packing>& packings, const Eigen::VectorXd& u) {
+  const auto n = static_cast<Eigen::Index>(packings.size());
+  Eigen::MatrixXd q(u.size(), n);
+  Eigen::VectorXd own(n);
+  Eigen::Index c = 0;
+  for (const auto& [id, packing] : packings) {
+    const Eigen::VectorXd a = packing.power * u;
+    q.col(c) = packing.Q * a;
+    own(c) = a.dot(q.col(c));
+    ++c;
+  }
+  Eigen::MatrixXd g = -q.transpose() * q;
+  g.diagonal() += own;
+  return std::max(1.0, g.trace() * g.trace() / g.squaredNorm());  // at least one, but for rounding
 }
 
 }  // namespace
 
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
-                                     const std::vector<int>& cluster, const std::vector<bool>& free,
-                                     Eigen::Index rows_together) {
+                                     const std::vector<int>& cluster, const std::vector<bool>& free) {
   const auto all = static_cast<std::size_t>(jacobian.cols());
+  const int packing_count = cluster.empty() ? 0 : 1 + *std::max_element(cluster.begin(), cluster.end());
   ClusterCovariance result;
-  result.covariance = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  result.influence = Eigen::MatrixXd::Zero(jacobian.cols(), packing_count);
+  result.degrees_of_freedom = Eigen::VectorXd::Constant(jacobian.cols(), std::numeric_limits<double>::quiet_NaN());
   result.identified.assign(all, true);  // a parameter on its bound is known to be there
   result.has_error.assign(all, false);
-  std::vector<Eigen::Index> columns;
-  for (std::size_t k = 0; k < all; ++k) {
-    if (free[k]) columns.push_back(static_cast<Eigen::Index>(k));
-  }
-  const auto p = static_cast<Eigen::Index>(columns.size());
-  if (p == 0) return result;
+  const std::vector<Eigen::Index> columns = columns_of(free);
+  if (columns.empty()) return result;
   const Eigen::MatrixXd J = jacobian(Eigen::all, columns);
   const Factor factor = factor_of(J);
   const Eigen::MatrixXd& L = factor.L;
@@ -85,41 +119,33 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
 
   std::map<int, std::vector<Eigen::Index>> rows_of;
   for (std::size_t i = 0; i < cluster.size(); ++i) rows_of[cluster[i]].push_back(static_cast<Eigen::Index>(i));
-  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(L.cols(), L.cols());  // in the coordinates of L
-  Eigen::MatrixXd meat_of_pieces = meat;
-  Eigen::VectorXd carried_by_one = Eigen::VectorXd::Zero(p);
+  std::map<int, Packing> packings;
+  Eigen::VectorXd carried_by_one = Eigen::VectorXd::Zero(L.rows());
   for (const auto& [id, rows] : rows_of) {
-    const Eigen::MatrixXd J_L = J(rows, Eigen::all) * L;
-    // Eigenvalues are those of the run's leverage J_c H^+ J_c^T.
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage(J_L.transpose() * J_L);
-    const Eigen::MatrixXd& W = leverage.eigenvectors();
-    Eigen::VectorXd power(L.cols());
-    for (Eigen::Index k = 0; k < L.cols(); ++k) {
-      const double h = leverage.eigenvalues()(k);
-      power(k) = h < kLargestLeverage ? 1 / std::sqrt(1 - h) : 0;
-      if (h >= kLargestLeverage) carried_by_one += (L * W.col(k)).cwiseAbs2();
-    }
-    const Eigen::VectorXd g = W * power.cwiseProduct(W.transpose() * (J_L.transpose() * misfit(rows)));
-    meat += g * g.transpose();
-    meat_of_pieces += products_of_pieces(J_L, misfit(rows), rows_together);
+    const Packing& packing = packings[id] = packing_of(J(rows, Eigen::all) * L, misfit(rows));
+    carried_by_one += (L * packing.alone).rowwise().squaredNorm();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> excess(meat_of_pieces - meat);
-  const Eigen::MatrixXd& U = excess.eigenvectors();
-  meat += U * excess.eigenvalues().cwiseMax(0).asDiagonal() * U.transpose();
-  const Eigen::MatrixXd V = L * meat * L.transpose();
-  for (Eigen::Index k = 0; k < p; ++k) {
-    const auto whole = static_cast<std::size_t>(columns[static_cast<std::size_t>(k)]);
-    result.identified[whole] = factor.identified[static_cast<std::size_t>(k)];
-    result.has_error[whole] = result.identified[whole] && carried_by_one(k) <= kCarriedByOne * L.row(k).squaredNorm();
-  }
-  for (Eigen::Index i = 0; i < p; ++i) {
-    for (Eigen::Index j = 0; j < p; ++j) {
-      const Eigen::Index a = columns[static_cast<std::size_t>(i)], b = columns[static_cast<std::size_t>(j)];
-      const bool both = result.has_error[static_cast<std::size_t>(a)] && result.has_error[static_cast<std::size_t>(b)];
-      if (both) result.covariance(a, b) = V(i, j);
-    }
+  for (Eigen::Index k = 0; k < L.rows(); ++k) {
+    const Eigen::Index whole = columns[static_cast<std::size_t>(k)];
+    const auto at = static_cast<std::size_t>(whole);
+    result.identified[at] = factor.identified[static_cast<std::size_t>(k)];
+    result.has_error[at] = result.identified[at] && carried_by_one(k) <= kCarriedByOne * L.row(k).squaredNorm();
+    if (!result.has_error[at]) continue;
+    for (const auto& [id, packing] : packings) result.influence(whole, id) = -L.row(k).dot(packing.g);
+    result.degrees_of_freedom(whole) = satterthwaite(packings, L.row(k));
   }
   return result;
+}
+
+Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free,
+                         const Eigen::MatrixXd& change) {
+  Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(jacobian.cols(), change.cols());
+  const std::vector<Eigen::Index> columns = columns_of(free);
+  if (columns.empty()) return moved;
+  const Eigen::MatrixXd J = jacobian(Eigen::all, columns);
+  const Eigen::MatrixXd L = factor_of(J).L;
+  moved(columns, Eigen::all) = -L * (L.transpose() * (J.transpose() * change));
+  return moved;
 }
 
 }  // namespace grainlaw::fit

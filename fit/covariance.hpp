@@ -1,13 +1,15 @@
 #pragma once
-// Standard errors of a least-squares fit whose rows are correlated within runs (DEM series are: the naive (J^T J)^-1
-// covers a third of what it promises). Cluster-robust sandwich over independent runs c, J and r weighted, H = J^T J:
-//   V = H^+ (sum_c g_c g_c^T) H^+,   g_c = J_c^T (1 - J_c H^+ J_c^T)^(-1/2) r_c
-// The power of the leverage undoes what a run's own share in the fit takes from its residual ("CR2"). For G runs that
-// share alike it is the factor G/(G-1); where a parameter rests on few of many runs (two ISO branches among twenty shear
-// tests, for the pressure's nu_c) it is the factor of those few, and correlations stay what they are.
-// With few runs the sum has few terms and can vanish in a direction by chance (two runs and three parameters: it must).
-// So the plain sum is also made with each run cut into ten pieces in the order of its rows: correlation within a piece
-// counts, that between pieces does not. Directions in which that is larger get what is missing.
+// Standard errors of a least-squares fit of rows that are not independent. Packings are the unit of chance: rows of one run
+// are correlated, and runs of one packing share the packing (the naive (J^T J)^-1 covers a third of what it promises).
+// Cluster-robust sandwich over packings c, J and r weighted, H = J^T J:
+//   V = sum_c psi_c psi_c^T,   psi_c = -H^+ J_c^T (1 - J_c H^+ J_c^T)^(-1/2) r_c
+// psi_c, the influence of packing c, is what it moved the parameters by. The power of the leverage undoes what a packing's
+// own share in the fit takes from its residual ("CR2"). For G packings that share alike it is the factor G/(G-1) in V,
+// which then is the variance of the mean of G fits, one to each packing; where a parameter rests on few of many packings it
+// is the factor of those few.
+// From few packings V itself is uncertain: an interval reaches over t standard errors, t by Student with the degrees of
+// freedom of Satterthwaite's approximation (G - 1 for packings that share alike),
+//   n_k = (sum_c g_cc)^2/sum_cd g_cd^2,   g = covariance over packings of the terms of V_kk for independent rows.
 // Source: Bell & McCaffrey, Survey Methodology 28 (2002) 169; the sandwich is Liang & Zeger, Biometrika 73 (1986) 13.
 //
 // Identifiability: singular values of J with columns scaled to one. A column that is zero, or takes part in a null
@@ -19,19 +21,25 @@
 namespace grainlaw::fit {
 
 struct ClusterCovariance {
-  Eigen::MatrixXd covariance;    ///< V; rows and columns without an error are zero
-  std::vector<bool> identified;  ///< per parameter, by the singular values
-  std::vector<bool> has_error;   ///< identified, and no single run carries it
-  double condition = 0;          ///< largest over smallest singular value of the scaled columns
+  Eigen::MatrixXd influence;           ///< parameters x packings; rows without an error are zero
+  Eigen::VectorXd degrees_of_freedom;  ///< per parameter; NaN without an error
+  std::vector<bool> identified;        ///< per parameter, by the singular values
+  std::vector<bool> has_error;         ///< identified, and no single packing carries it
+  double condition = 0;                ///< largest over smallest singular value of the scaled columns
+
+  Eigen::MatrixXd covariance() const { return influence * influence.transpose(); }
 };
 
 inline constexpr double kNullSingularValue = 1e-7;  ///< relative to the largest; exact derivatives reach 1e-13
-inline constexpr double kLargestLeverage = 0.9;     ///< of a run on a direction; beyond, its residual says nothing
+inline constexpr double kLargestLeverage = 0.9;     ///< of a packing on a direction; beyond, its residual says nothing
 
-/// `jacobian` and `misfit` weighted, rows of zero weight left out; `free` false holds a parameter (at a bound) fixed. Of
-/// the rows of a run, `rows_together` at a time stay in one piece.
+/// `jacobian` and `misfit` weighted, rows of zero weight left out; `free` false holds a parameter (at a bound) fixed.
+/// `cluster` of each row: its packing, numbered from 0.
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
-                                     const std::vector<int>& cluster, const std::vector<bool>& free,
-                                     Eigen::Index rows_together = 1);
+                                     const std::vector<int>& cluster, const std::vector<bool>& free);
+
+/// By how much the free parameters move when the weighted misfits change by the columns of `change`: -H^+ J^T change.
+/// Parameters x columns.
+Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free, const Eigen::MatrixXd& change);
 
 }  // namespace grainlaw::fit

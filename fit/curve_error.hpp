@@ -1,7 +1,6 @@
 #pragma once
 // Standard error of a curve over density, from the covariance of its parameters by the delta method: g^T V g, g the
-// gradient of the curve. Stages are fitted one after the other, so V has no terms between them but what they inherit; where
-// a curve joins stages (P* by Eq. (14) reads C* and phi_r) errors of theirs are added as if independent.
+// gradient of the curve. V has the terms between stages, too: P* by Eq. (14) reads C* and phi_r, of the same packings.
 
 #include "fit/calibrate.hpp"
 #include "model/density_curves.hpp"

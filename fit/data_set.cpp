@@ -75,6 +75,12 @@ bool shears(const TestRecord& test) {
   });
 }
 
+std::set<std::uint64_t> seeds_of(const DataSet& data) {
+  std::set<std::uint64_t> seeds;
+  for (const TestRecord* test : data.all_used()) seeds.insert(test->packing.seed);
+  return seeds;
+}
+
 }  // namespace
 
 std::vector<const TestRecord*> DataSet::all_used() const {
@@ -117,13 +123,11 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
   return data;
 }
 
-int cluster_of(const DataSet& data, const TestRecord& test) {
-  const auto all = data.all_used();
-  const auto same_state = [&](const TestRecord* other) {
-    return other->packing.seed == test.packing.seed && other->path.branch == test.path.branch &&
-           std::abs(other->rows.front().nu - test.rows.front().nu) < 1e-6;
-  };
-  return static_cast<int>(std::find_if(all.begin(), all.end(), same_state) - all.begin());
+int packing_of(const DataSet& data, const TestRecord& test) {
+  const std::set<std::uint64_t> seeds = seeds_of(data);
+  return static_cast<int>(std::distance(seeds.begin(), seeds.find(test.packing.seed)));
 }
+
+int packing_count(const DataSet& data) { return static_cast<int>(seeds_of(data).size()); }
 
 }  // namespace grainlaw::fit

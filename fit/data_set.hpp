@@ -23,7 +23,8 @@ struct DataSet {
 /// at constant volume.
 DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role = Role::calibration);
 
-/// Independent of one another are runs from different kept states: one number per (seed, branch, nu at the start).
-int cluster_of(const DataSet& data, const TestRecord& test);
+/// Independent of one another are packings (seeds), not the runs that start from one: the test's packing, from 0.
+int packing_of(const DataSet& data, const TestRecord& test);
+int packing_count(const DataSet& data);
 
 }  // namespace grainlaw::fit

@@ -75,6 +75,12 @@ Eigen::VectorXd slope_of(const std::vector<DensitySeries>& series, const Slope& 
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+/// Of a fit of Eq. (11) or (14), whose third parameter is nu_c.
+void inherit_nu_c(const StageFit& first, const Eigen::VectorXd& slope, StageFit& second) {
+  const double degrees_of_freedom = first.stage.estimates[2].estimate.degrees_of_freedom;
+  inherit_error(slope, first.influence.row(2), Eigen::VectorXd::Constant(1, degrees_of_freedom), second);
+}
+
 const char* const kMoreDensities = "the rows do not determine it; test more densities";
 
 }  // namespace
@@ -145,13 +151,13 @@ std::vector<StageFit> fit_state_law(const std::string& prefix, const std::vector
   law.coordination = {C.solution.x(0), C.solution.x(1), C.solution.x(2)};
   const StageFit& phi = run("rattlers", rattlers_problem(prefix, series, law.rattlers, law.coordination.nu_c), 2);
   law.rattlers = {phi.solution.x(0), phi.solution.x(1)};
-  inherit_error(fits[0], prefix + "coordination.nu_c",
-                slope_of(series,
-                         [&](const DensityPoint& p) {
-                           const double nu_c = law.coordination.nu_c;
-                           return law.rattlers.fraction(p.nu, nu_c) * law.rattlers.phi_v * p.nu / (nu_c * nu_c);
-                         }),
-                fits[1]);
+  inherit_nu_c(fits[0],
+               slope_of(series,
+                        [&](const DensityPoint& p) {
+                          const double nu_c = law.coordination.nu_c;
+                          return law.rattlers.fraction(p.nu, nu_c) * law.rattlers.phi_v * p.nu / (nu_c * nu_c);
+                        }),
+               fits[1]);
   const StageFit& P = run("pressure", pressure_problem(prefix, series, law.pressure), 3);
   law.pressure = {P.solution.x(0), P.solution.x(1), P.solution.x(2)};
   return fits;
@@ -174,7 +180,7 @@ StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string
   StageFit fit = fit_stage("overlap", window + fmt::format(", rows unweighted, nu_c = {:.5f} of the pressure", nu_c),
                            {free_parameter("overlap.D", start)}, blocks, kMoreDensities, options.threads, control);
   const double D = fit.solution.x(0);
-  inherit_error(pressure, "pressure.nu_c", slope_of(series, [&](const DensityPoint&) { return -D / nu_c; }), fit);
+  inherit_nu_c(pressure, slope_of(series, [&](const DensityPoint&) { return -D / nu_c; }), fit);
   return fit;
 }
 

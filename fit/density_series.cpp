@@ -49,7 +49,7 @@ std::vector<DensitySeries> unloading_series(const std::vector<const TestRecord*>
                                             const CalibrationOptions& options) {
   std::vector<DensitySeries> all;
   for (const TestRecord* test : tests) {
-    DensitySeries series{test->name, cluster_of(data, *test), 0, {}};
+    DensitySeries series{test->name, packing_of(data, *test), 0, {}};
     for (std::size_t i = 0; i < test->rows.size(); ++i) {
       const Observation& row = test->rows[i];
       const PathSegment& segment = test->path.segments.at(static_cast<std::size_t>(row.segment));
@@ -80,7 +80,7 @@ std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const C
   std::vector<DensitySeries> all;
   for (const TestRecord* test : data.pure_shear) {
     if (test->path.segments.front().mode != mode) continue;
-    DensitySeries series{test->name, cluster_of(data, *test), 0, {}};
+    DensitySeries series{test->name, packing_of(data, *test), 0, {}};
     std::vector<DensityPoint> steady;
     for (std::size_t i = 0; i < test->rows.size(); ++i) {
       const Observation& row = test->rows[i];

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "fit/density_law_fit.hpp"
@@ -96,7 +95,7 @@ void judge_pair(StageFit& fit, const std::vector<Trajectory>& trajectories, cons
   std::sort(nu.begin(), nu.end());
   const double y = nu[nu.size() / 2] / law.shear_nu_c - 1, decay = std::exp(-alpha * y);
   const Eigen::Vector3d slope(1, decay, -Q_c * decay * y);
-  const double error = std::sqrt(std::max(0.0, slope.dot(fit.covariance.block<3, 3>(i, i) * slope)));
+  const double error = std::sqrt(std::max(0.0, slope.dot(fit.covariance().block<3, 3>(i, i) * slope)));
   if (error > kVague * (Q_limit + Q_c * decay)) withdraw(fit, pair.rate, too_little);
 }
 
@@ -105,10 +104,17 @@ void judge_coupling(StageFit& fit, const std::string& name, const std::string& r
   const Eigen::Index k = index_of(fit, name);
   const double scale = std::max(std::abs(fit.solution.x(k)), parameter_table()[parameter_index(name)].start);
   const bool felt = fit.solution.weight.cwiseProduct(fit.solution.jacobian.col(k)).norm() * scale >= kFelt;
-  if (!felt || std::sqrt(fit.covariance(k, k)) > kVague * scale) {
+  if (!felt || fit.influence.row(k).norm() > kVague * scale) {
     fit.mark_not_identified(name, "too little fabric on the paths that change the volume; " + remedy);
   }
 }
+
+/// sigma_N/(B F_N) of a test's steady rows.
+struct RatioOfTest {
+  int packing = 0, rows = 0;
+  double sum = 0;
+  double mean() const { return sum / rows; }
+};
 
 std::string window_text(const CalibrationOptions& options) {
   return fmt::format(
@@ -130,7 +136,8 @@ bool contains_anisotropy(const std::vector<Trajectory>& trajectories) {
 }
 
 StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                       std::vector<std::string> held, const CalibrationOptions& options, const RunControl& control) {
+                       std::vector<std::string> held, const CalibrationOptions& options, const RunControl& control,
+                       const FoundErrors& found) {
   const bool energy = options.coupling == Coupling::energy;
   const std::string coupling = energy ? "anisotropy.a2" : "anisotropy.a0";
   const bool anisotropy = contains_anisotropy(trajectories);
@@ -147,6 +154,12 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
     for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
       *field[parameter_index(problem.parameters[k].name)] = fit.solution.x(static_cast<Eigen::Index>(k));
     }
+    inherit_error(
+        {"coordination", "rattlers"}, found, law,
+        [&](const LawParameters<double>& given) {
+          return evolution_problem(trajectories, given, held, options).blocks;
+        },
+        fit);
     for (const ShearQuantity& quantity : kShearQuantities) settle_constant_law(fit, quantity.name);
     for (const Pair& pair : kPairs) judge_pair(fit, trajectories, law, pair, options);
     if (anisotropy) judge_coupling(fit, coupling, remedy);
@@ -155,37 +168,44 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
   return fit;
 }
 
-Estimate tied_a1(const std::vector<Trajectory>& trajectories, const LawParameters<double>& law, const Estimate& a2,
-                 const CalibrationOptions& options) {
-  Estimate a1{0, std::numeric_limits<double>::quiet_NaN(), Status::not_identified,
-              "follows from a2 by A1 = (2/3)(A2 - sigma_dev): " + a2.note};
-  if (a2.status == Status::not_identified) return a1;
-  std::map<std::string, std::pair<double, int>> ratio;  // sum of sigma_N/(B F_N) and rows, per test
+TiedCoupling tied_a1(const std::vector<Trajectory>& trajectories, const LawParameters<double>& law, const Estimate& a2,
+                     const Eigen::RowVectorXd& influence_on_a2, const CalibrationOptions& options) {
+  TiedCoupling tied{{}, Eigen::RowVectorXd::Zero(influence_on_a2.size())};
+  Estimate& a1 = tied.a1;
+  a1.note = "follows from a2 by A1 = (2/3)(A2 - sigma_dev): " + a2.note;
+  if (a2.status == Status::not_identified) return tied;
+  std::map<std::string, RatioOfTest> ratios;
   for (const Trajectory& t : trajectories) {
     if (t.direction.de == 0 || std::abs(t.direction.dx) > 1e-12) continue;
     const double B = law.isotropic.B_star(t.nu_start);
     for (const TrajectoryRow& row : t.rows) {
       const double F = row.data.F.dot(t.direction.N);
       if (t.direction.de * row.e < options.steady_from || !(F > 0)) continue;
-      auto& [sum, rows] = ratio[t.test];
-      sum += row.data.sigma.dot(t.direction.N) / (B * F);
-      ++rows;
+      RatioOfTest& ratio = ratios[t.test];
+      ratio.packing = t.cluster;
+      ratio.sum += row.data.sigma.dot(t.direction.N) / (B * F);
+      ++ratio.rows;
     }
   }
-  if (ratio.empty()) {
+  if (ratios.empty()) {
     a1.note = "no steady shear to refer it to; shear to eps_dev >= " + fmt::format("{:g}", options.steady_from);
-    return a1;
+    return tied;
   }
-  const double n = static_cast<double>(ratio.size());
-  double mean = 0, scatter = 0;
-  for (const auto& [test, sum] : ratio) mean += sum.first / sum.second / n;
-  for (const auto& [test, sum] : ratio) scatter += std::pow(sum.first / sum.second - mean, 2);
-  const double of_mean = n > 1 ? scatter / (n - 1) / n : std::numeric_limits<double>::quiet_NaN();
+  const double n = static_cast<double>(ratios.size());
+  double mean = 0;
+  for (const auto& [test, ratio] : ratios) mean += ratio.mean() / n;
+  std::map<int, double> off;  // of the mean, by what each packing added to it
+  for (const auto& [test, ratio] : ratios) off[ratio.packing] += (ratio.mean() - mean) / n;
   a1.value = 2. / 3 * (a2.value - mean);
-  a1.standard_error = 2. / 3 * std::sqrt(a2.standard_error * a2.standard_error + of_mean);
   a1.status = Status::tied;
-  a1.note = fmt::format("mean of A1/(B F) over steady shear of {} tests, A1 = (2/3)(A2 - sigma_dev)", ratio.size());
-  return a1;
+  a1.note = fmt::format("mean of A1/(B F) over steady shear of {} tests, A1 = (2/3)(A2 - sigma_dev)", ratios.size());
+  if (!std::isfinite(a2.standard_error) || off.size() < 2) return tied;
+  const double packings = static_cast<double>(off.size()), few = std::sqrt(packings / (packings - 1));
+  tied.influence = 2. / 3 * influence_on_a2;
+  for (const auto& [packing, part] : off) tied.influence(packing) -= 2. / 3 * few * part;
+  a1.standard_error = tied.influence.norm();
+  a1.degrees_of_freedom = std::min(a2.degrees_of_freedom, packings - 1);
+  return tied;
 }
 
 }  // namespace grainlaw::fit

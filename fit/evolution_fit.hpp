@@ -9,6 +9,7 @@
 // stands across them is the noise of a finite packing, and no parameter moves it.
 // Weights: shear_window.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
 
+#include "fit/inherited_error.hpp"
 #include "fit/stage_fit.hpp"
 #include "fit/trajectory.hpp"
 
@@ -30,13 +31,18 @@ bool contains_anisotropy(const std::vector<Trajectory>& trajectories);
 
 /// Stage "evolution"; `law` holds the start and takes the result. Claims are withdrawn where the data cannot carry them:
 /// saturation shown at fewer than three densities, a rate that acts on nothing, no path that identifies the coupling.
-/// Laws of which no shear test shows anything (`held`) stay as they are.
+/// Laws of which no shear test shows anything (`held`) stay as they are. Errors contain those of `found` for Eqs. (11), (12).
 StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                       std::vector<std::string> held, const CalibrationOptions& options, const RunControl& control);
+                       std::vector<std::string> held, const CalibrationOptions& options, const RunControl& control,
+                       const FoundErrors& found = {});
 
 /// a1 = mean of A1/(B F_N) over steady shear by the identity A1 = (2/3)(A2 - sigma_dev): tied to a2, Coupling::energy.
-/// Its error comes from a2's and from the scatter of the ratio over tests.
-Estimate tied_a1(const std::vector<Trajectory>& trajectories, const LawParameters<double>& law, const Estimate& a2,
-                 const CalibrationOptions& options);
+/// Its error comes from a2's and from the scatter of the ratio over packings.
+struct TiedCoupling {
+  Estimate a1;
+  Eigen::RowVectorXd influence;  ///< of the packings; as wide as that of a2, zero without an error
+};
+TiedCoupling tied_a1(const std::vector<Trajectory>& trajectories, const LawParameters<double>& law, const Estimate& a2,
+                     const Eigen::RowVectorXd& influence_on_a2, const CalibrationOptions& options);
 
 }  // namespace grainlaw::fit

@@ -2,66 +2,84 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fit/covariance.hpp"
 
 namespace grainlaw::fit {
 namespace {
 
-// Of the first stage's rows over the second's: its square is lost from the influence of the second on the first, and no
-// digit of the singular values, which are those of columns scaled to one.
-constexpr double kDominance = 1e5;
+constexpr double kStep = 1e-6;  // of a parameter; the quotient's own error is about as small, errors need two digits
 
-std::vector<bool> free_of(const Solution& solution) {
-  std::vector<bool> free(solution.at_bound);
-  free.flip();
-  return free;
+bool has_error(const Eigen::MatrixXd& influence, Eigen::Index k) { return influence.row(k).squaredNorm() > 0; }
+
+/// Of the parameters `index` that have an error: d misfit/d parameter of all rows at the stage's solution.
+Eigen::MatrixXd slopes(const std::vector<std::size_t>& index, const LawParameters<double>& law,
+                       const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
+                       const Solution& solution) {
+  Eigen::MatrixXd slope(solution.misfit.size(), static_cast<Eigen::Index>(index.size()));
+  for (std::size_t k = 0; k < index.size(); ++k) {
+    LawParameters<double> moved = law;
+    double& value = *fields(moved)[index[k]];
+    const double before = value;
+    value -= kStep * std::max(std::abs(value), 1e-3);  // downwards: a jamming density then leaves the data further away
+    Eigen::VectorXd misfit(solution.misfit.size());
+    Eigen::Index first = 0;
+    for (const ResidualBlock& block : blocks_at(moved)) {
+      if (!block.evaluate(solution.x.data(), misfit.data() + first, nullptr))
+        misfit.segment(first, block.rows()) = solution.misfit.segment(first, block.rows());
+      first += block.rows();
+    }
+    slope.col(static_cast<Eigen::Index>(k)) = (misfit - solution.misfit) / (value - before);
+  }
+  return slope;
 }
 
 }  // namespace
 
-void inherit_error(const StageFit& first, const std::string& parameter, const Eigen::VectorXd& slope,
-                   StageFit& second) {
-  const auto named = [&](const NamedEstimate& e) { return e.name == parameter; };
-  const auto& given = first.stage.estimates;
-  const auto k = std::find_if(given.begin(), given.end(), named) - given.begin();
-  const Solution &a = first.solution, &b = second.solution;
-  if (!a.defined || !b.defined || !std::isfinite(given.at(static_cast<std::size_t>(k)).estimate.standard_error)) return;
+FoundErrors no_errors(int packings) {
+  constexpr auto n = static_cast<Eigen::Index>(kParameterCount);
+  return {Eigen::MatrixXd::Zero(n, packings), Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN())};
+}
 
-  const Eigen::VectorXd inherited = b.weight.cwiseProduct(slope);
-  const double dominance = kDominance * inherited.norm() / a.weight.cwiseProduct(a.jacobian.col(k)).norm();
-  if (!(dominance > 0) || !std::isfinite(dominance)) return;
-  const Eigen::Index n_a = a.x.size(), n_b = b.x.size(), rows_a = a.weight.size(), rows_b = b.weight.size();
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows_a + rows_b, n_a + n_b);
-  Eigen::VectorXd misfit(rows_a + rows_b);
-  std::vector<int> cluster;
-  // Rows of both stages by turns. Both read the same rows of the data, so that two by two belong together.
-  for (Eigen::Index i = 0, row = 0; i < std::max(rows_a, rows_b); ++i) {
-    if (i < rows_a) {
-      J.row(row).head(n_a) = dominance * a.weight(i) * a.jacobian.row(i);
-      misfit(row++) = dominance * a.weight(i) * a.misfit(i);
-      cluster.push_back(a.cluster[static_cast<std::size_t>(i)]);
-    }
-    if (i < rows_b) {
-      J(row, k) = inherited(i);
-      J.row(row).tail(n_b) = b.weight(i) * b.jacobian.row(i);
-      misfit(row++) = b.weight(i) * b.misfit(i);
-      cluster.push_back(b.cluster[static_cast<std::size_t>(i)]);
-    }
+void inherit_error(const Eigen::MatrixXd& slope, const Eigen::MatrixXd& influence,
+                   const Eigen::VectorXd& degrees_of_freedom, StageFit& second) {
+  const Solution& solution = second.solution;
+  if (!solution.defined || influence.squaredNorm() == 0) return;
+  std::vector<bool> free(solution.at_bound);
+  free.flip();
+  const auto& w = solution.weight;
+  const Eigen::MatrixXd moved = response(w.asDiagonal() * solution.jacobian, free, w.asDiagonal() * slope) * influence;
+  const Eigen::Index packings = second.influence.cols();
+  if (packings < influence.cols()) {  // of packings that the stage does not read
+    second.influence.conservativeResize(Eigen::NoChange, influence.cols());
+    second.influence.rightCols(influence.cols() - packings).setZero();
   }
-  std::vector<bool> free = free_of(a);
-  const std::vector<bool> free_b = free_of(b);
-  free.insert(free.end(), free_b.begin(), free_b.end());
-  const ClusterCovariance errors = cluster_covariance(J, misfit, cluster, free, rows_a == rows_b ? 2 : 1);
-  for (Eigen::Index i = 0; i < n_b; ++i) {
+  for (Eigen::Index i = 0; i < second.influence.rows(); ++i) {
     Estimate& estimate = second.stage.estimates[static_cast<std::size_t>(i)].estimate;
-    if (!std::isfinite(estimate.standard_error) || !errors.has_error[static_cast<std::size_t>(n_a + i)]) continue;
-    estimate.standard_error = std::sqrt(errors.covariance(n_a + i, n_a + i));
-    for (Eigen::Index j = 0; j < n_b; ++j) {
-      if (second.covariance(i, i) > 0 && second.covariance(j, j) > 0)
-        second.covariance(i, j) = second.covariance(j, i) = errors.covariance(n_a + i, n_a + j);
+    if (!std::isfinite(estimate.standard_error)) continue;
+    second.influence.row(i).head(influence.cols()) += moved.row(i);
+    estimate.standard_error = second.influence.row(i).norm();
+    for (Eigen::Index k = 0; k < influence.rows(); ++k) {
+      if (has_error(influence, k))
+        estimate.degrees_of_freedom = std::min(estimate.degrees_of_freedom, degrees_of_freedom(k));
     }
   }
+}
+
+void inherit_error(const std::vector<std::string>& groups, const FoundErrors& found, const LawParameters<double>& law,
+                   const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
+                   StageFit& second) {
+  if (!second.solution.defined || found.influence.cols() == 0) return;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const std::string name = parameter_table()[i].name, group = name.substr(0, name.find('.'));
+    const bool given = std::find(groups.begin(), groups.end(), group) != groups.end();
+    if (given && has_error(found.influence, static_cast<Eigen::Index>(i))) index.push_back(i);
+  }
+  if (index.empty()) return;
+  inherit_error(slopes(index, law, blocks_at, second.solution), found.influence(index, Eigen::all),
+                found.degrees_of_freedom(index), second);
 }
 
 }  // namespace grainlaw::fit

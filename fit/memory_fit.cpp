@@ -15,6 +15,9 @@ constexpr int kMostParameters = 6;
 using Jet = ceres::Jet<double, kMostParameters>;
 constexpr double kVague = 0.5;  // relative error beyond which a parameter is no number
 constexpr double kRounding = 1e-9;
+const std::vector<std::string> kGivenLaws{"coordination",        "rattlers",        "pressure",
+                                          "steady_coordination", "steady_rattlers", "steady_pressure",
+                                          "stress_ratio_max",    "fabric_max"};
 
 std::vector<std::string> free_names(bool volumetric) {
   std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda"};
@@ -116,7 +119,7 @@ MemoryProblem memory_problem(const std::vector<Trajectory>& trajectories, const 
 }
 
 StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                    const CalibrationOptions& options, const RunControl& control) {
+                    const CalibrationOptions& options, const RunControl& control, const FoundErrors& found) {
   const std::string remedy =
       "add a test that shears and then changes the volume, e.g. D2 to eps_dev = 0.15 and then ISO to nu + 0.03 and "
       "back";
@@ -126,6 +129,12 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
       fit_stage("memory", window_text(options), problem.parameters, problem.blocks,
                 "the trajectories do not determine it; shear at more and at lower densities", options.threads, control);
   if (fit.solution.defined) {
+    inherit_error(
+        kGivenLaws, found, law,
+        [&](const LawParameters<double>& given) {
+          return memory_problem(trajectories, given, volumetric, options).blocks;
+        },
+        fit);
     const auto field = fields(law);
     for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
       const std::string& name = problem.parameters[k].name;

@@ -7,6 +7,7 @@
 //   P   shear at constant volume, all rows (k); elsewhere shown
 // Each test and quantity counts the same, in units of the scales in CalibrationOptions.
 
+#include "fit/inherited_error.hpp"
 #include "fit/stage_fit.hpp"
 #include "fit/trajectory.hpp"
 
@@ -22,9 +23,9 @@ MemoryProblem memory_problem(const std::vector<Trajectory>& trajectories, const 
                              bool volumetric, const CalibrationOptions& options);
 
 /// Stage "memory"; `law` holds the start and takes the result. A parameter whose relative error is beyond a half, or that
-/// the data do not contain, is not identified.
+/// the data do not contain, is not identified. Errors contain those of `found` for the laws of the stages before.
 StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                    const CalibrationOptions& options, const RunControl& control);
+                    const CalibrationOptions& options, const RunControl& control, const FoundErrors& found = {});
 
 /// The stage when a law that it builds on is missing: nothing of it is identified, `remedy` says why.
 StageFit no_memory(const std::string& remedy);

@@ -23,9 +23,13 @@ std::string to_string(Status status);
 struct Estimate {
   double value = 0;  ///< not to be read when not identified
   double standard_error =
-      std::numeric_limits<double>::quiet_NaN();  ///< over runs, covariance.hpp; NaN unless fitted or tied
+      std::numeric_limits<double>::quiet_NaN();  ///< over packings, covariance.hpp; NaN unless fitted or tied
   Status status = Status::not_identified;
   std::string note;  ///< why, e.g. which experiment would identify it; may be empty
+  double degrees_of_freedom = std::numeric_limits<double>::quiet_NaN();  ///< of the standard error; NaN without one
+
+  /// Half of the 95 % interval, by Student's t; NaN without an error.
+  double half_width() const;
 };
 
 struct NamedEstimate {

@@ -75,30 +75,14 @@ std::size_t position(const Stage& stage, const std::string& name) {
 
 }  // namespace
 
-std::string to_string(Status status) {
-  switch (status) {
-    case Status::fitted:
-      return "fitted";
-    case Status::fixed:
-      return "fixed";
-    case Status::tied:
-      return "tied";
-    case Status::at_bound:
-      return "at_bound";
-    case Status::not_identified:
-      break;
-  }
-  return "not_identified";
-}
-
 void StageFit::mark_not_identified(const std::string& name, const std::string& note) {
   const std::size_t k = position(stage, name);
   Estimate& estimate = stage.estimates[k].estimate;
   estimate.status = Status::not_identified;
   estimate.standard_error = kNoError;
   estimate.note = note;
-  covariance.row(static_cast<Eigen::Index>(k)).setZero();
-  covariance.col(static_cast<Eigen::Index>(k)).setZero();
+  estimate.degrees_of_freedom = kNoError;
+  influence.row(static_cast<Eigen::Index>(k)).setZero();
 }
 
 StageFit fit_stage(const std::string& name, const std::string& window, const std::vector<FreeParameter>& parameters,
@@ -119,7 +103,7 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
   stage.converged = solution.converged;
   stage.seconds = solution.seconds;
   const auto n = static_cast<Eigen::Index>(parameters.size());
-  fit.covariance = Eigen::MatrixXd::Zero(n, n);
+  fit.influence = Eigen::MatrixXd::Zero(n, 0);
   for (const FreeParameter& p : parameters) stage.estimates.push_back({p.name, {}});
   if (!solution.defined) {
     for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -131,7 +115,7 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
   stage.tests = misfit_per_test(blocks, solution);
 
   const ClusterCovariance errors = covariance_of(solution);
-  fit.covariance = errors.covariance;
+  fit.influence = errors.influence;
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     Estimate& estimate = stage.estimates[k].estimate;
@@ -145,9 +129,10 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
     } else {
       estimate.status = Status::fitted;
       if (errors.has_error[k]) {
-        estimate.standard_error = std::sqrt(errors.covariance(i, i));
+        estimate.standard_error = errors.influence.row(i).norm();
+        estimate.degrees_of_freedom = errors.degrees_of_freedom(i);
       } else {
-        estimate.note = "rests on a single run, hence no error; add seeds";
+        estimate.note = "rests on a single packing, hence no error; add seeds";
       }
     }
   }
@@ -161,7 +146,7 @@ StageFit skipped_stage(const std::string& name, const std::vector<std::string>& 
   fit.stage.termination = "left out";
   fit.stage.converged = true;
   const auto n = static_cast<Eigen::Index>(parameters.size());
-  fit.covariance = Eigen::MatrixXd::Zero(n, n);
+  fit.influence = Eigen::MatrixXd::Zero(n, 0);
   fit.solution.x = Eigen::VectorXd::Constant(n, kNoError);
   for (const std::string& parameter : parameters) {
     fit.stage.estimates.push_back({parameter, {}});

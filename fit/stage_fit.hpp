@@ -11,16 +11,18 @@
 namespace grainlaw::fit {
 
 struct StageFit {
-  Stage stage;                 ///< its estimates are those of the free parameters, in their order
-  Eigen::MatrixXd covariance;  ///< of the free parameters; zero where there is no error
+  Stage stage;                ///< its estimates are those of the free parameters, in their order
+  Eigen::MatrixXd influence;  ///< of the packings on the free parameters, covariance.hpp; zero where there is no error
   Solution solution;
 
-  /// Withdraws the claim on `name`: no error, no covariance, `note` says which data would determine it.
+  Eigen::MatrixXd covariance() const { return influence * influence.transpose(); }
+
+  /// Withdraws the claim on `name`: no error, `note` says which data would determine it.
   void mark_not_identified(const std::string& name, const std::string& note);
 };
 
 /// Solves. Estimates: at_bound without error; not_identified when the singular values say so, with `remedy` as note;
-/// else fitted with the cluster-robust error, NaN with a note when it rests on a single run.
+/// else fitted with the cluster-robust error, NaN with a note when it rests on a single packing.
 StageFit fit_stage(const std::string& name, const std::string& window, const std::vector<FreeParameter>& parameters,
                    const std::vector<ResidualBlock>& blocks, const std::string& remedy, int threads,
                    const RunControl& control);

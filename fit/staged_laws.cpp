@@ -11,10 +11,11 @@
 
 namespace grainlaw::fit {
 
-Calibration nothing_known() {
+Calibration nothing_known(int packings) {
   Calibration calibration;
   calibration.parameters = start_parameters();
-  calibration.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
+  calibration.errors = no_errors(packings);
+  calibration.covariance = calibration.errors.covariance();
   calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c,
                                                           std::numeric_limits<double>::quiet_NaN(), Status::fixed,
                                                           "degenerate with Q_c and alpha of Eq. (20)"};
@@ -23,18 +24,14 @@ Calibration nothing_known() {
 
 void record(Calibration& calibration, const StageFit& fit) {
   calibration.stages.push_back(fit.stage);
-  std::vector<Eigen::Index> index;
-  for (const NamedEstimate& e : fit.stage.estimates) {
-    index.push_back(static_cast<Eigen::Index>(parameter_index(e.name)));
-    calibration.estimates[static_cast<std::size_t>(index.back())] = e.estimate;
-    calibration.covariance.row(index.back()).setZero();
-    calibration.covariance.col(index.back()).setZero();
-  }
-  for (Eigen::Index i = 0; i < fit.covariance.rows(); ++i) {
-    for (Eigen::Index j = 0; j < fit.covariance.cols(); ++j) {
-      calibration.covariance(index[static_cast<std::size_t>(i)], index[static_cast<std::size_t>(j)]) =
-          fit.covariance(i, j);
-    }
+  for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
+    const NamedEstimate& e = fit.stage.estimates[k];
+    const auto i = static_cast<Eigen::Index>(parameter_index(e.name)), row = static_cast<Eigen::Index>(k);
+    calibration.estimates[static_cast<std::size_t>(i)] = e.estimate;
+    calibration.errors.degrees_of_freedom(i) = e.estimate.degrees_of_freedom;
+    calibration.errors.influence.row(i).setZero();
+    if (row < fit.influence.rows())
+      calibration.errors.influence.row(i).head(fit.influence.cols()) = fit.influence.row(row);
   }
 }
 
@@ -80,7 +77,7 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
   calibration.shear = fit_shear_tests(data, calibration.parameters.isotropic.pressure.nu_c, options, control, stage);
   calibration.stages.push_back(stage);
   std::vector<int> cluster;
-  for (const TestRecord* test : data.pure_shear) cluster.push_back(cluster_of(data, *test));
+  for (const TestRecord* test : data.pure_shear) cluster.push_back(packing_of(data, *test));
   for (const ShearQuantity& quantity : kShearQuantities) {
     record(calibration,
            fit_density_law(quantity, calibration.shear, cluster, calibration.parameters, options, control));

@@ -11,8 +11,8 @@
 
 namespace grainlaw::fit {
 
-/// Parameters at their start, nothing identified but the fixed nu_c of Eq. (20), no stages.
-Calibration nothing_known();
+/// Parameters at their start, nothing identified but the fixed nu_c of Eq. (20), no stages, no errors.
+Calibration nothing_known(int packings = 0);
 
 /// Takes over what a stage says; it replaces what earlier ones said of the same parameters.
 void record(Calibration& calibration, const StageFit& fit);

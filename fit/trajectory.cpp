@@ -85,7 +85,7 @@ std::vector<Trajectory> trajectories_of(const DataSet& data, double nu_c, const 
       // The last row of a segment is the corner where the next one starts.
       if (i - first >= 2) {
         all.push_back(segment_of(*test, test->rows[i - 1].segment, first, i, nu_c, options));
-        all.back().cluster = cluster_of(data, *test);
+        all.back().cluster = packing_of(data, *test);
         all.back().start.s_r = s_r;
         if (all.back().start.P > 0) turn_corner(Rung::memory, all.back().start, all.back().direction);
         s_r = all.back().start.s_r;

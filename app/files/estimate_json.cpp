@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "model/error.hpp"
 
@@ -20,6 +21,12 @@ fit::Status status_from(const std::string& text) {
   throw InvalidInput(fmt::format("status: '{}' is not known", text));
 }
 
+/// Of files without the key, older ones: infinite, as if errors were exact.
+double degrees_of_freedom(const Json& object) {
+  if (object.contains("degrees_of_freedom")) return number_or_nan(object["degrees_of_freedom"]);
+  return object.at("standard_error").is_null() ? std::nan("") : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 OrderedJson estimate_to_json(const fit::Estimate& estimate) {
@@ -27,6 +34,9 @@ OrderedJson estimate_to_json(const fit::Estimate& estimate) {
   OrderedJson object;
   object["value"] = has_value ? number_or_null(estimate.value) : OrderedJson(nullptr);
   object["standard_error"] = has_value ? number_or_null(estimate.standard_error) : OrderedJson(nullptr);
+  object["degrees_of_freedom"] = has_value ? number_or_null(estimate.degrees_of_freedom) : OrderedJson(nullptr);
+  const double half = has_value ? estimate.half_width() : std::nan("");
+  if (std::isfinite(half)) object["interval_95"] = {estimate.value - half, estimate.value + half};
   object["status"] = to_string(estimate.status);
   if (!estimate.note.empty()) object["note"] = estimate.note;
   return object;
@@ -34,7 +44,7 @@ OrderedJson estimate_to_json(const fit::Estimate& estimate) {
 
 fit::Estimate estimate_from_json(const Json& object) {
   fit::Estimate estimate{number_or_nan(object.at("value")), number_or_nan(object.at("standard_error")),
-                         status_from(object.at("status")), object.value("note", "")};
+                         status_from(object.at("status")), object.value("note", ""), degrees_of_freedom(object)};
   if ((estimate.status == fit::Status::not_identified) != std::isnan(estimate.value)) {
     throw InvalidInput(
         fmt::format("value: must be null exactly when the status is '{}'", to_string(fit::Status::not_identified)));

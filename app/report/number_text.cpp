@@ -46,6 +46,14 @@ std::string with_error(double value, double standard_error) {
   return fixed(value, decimals) + " ± " + fixed(standard_error, decimals);
 }
 
+std::string interval_text(double value, double half_width) {
+  if (!std::isfinite(value) || !(std::isfinite(half_width) && half_width > 0)) return "";
+  const double exponent = std::floor(std::log10(half_width));
+  if (exponent < -9 || exponent > 5) return significant(value - half_width) + " … " + significant(value + half_width);
+  const int decimals = std::max(0, 1 - static_cast<int>(exponent));
+  return fixed(value - half_width, decimals) + " … " + fixed(value + half_width, decimals);
+}
+
 std::string percent_difference(double ours, double reference) {
   const double percent = 100 * (ours - reference) / std::abs(reference);
   if (!std::isfinite(percent)) return kNoNumber;

@@ -19,6 +19,8 @@ std::string fixed(double value, int decimals);
 /// "8.27 ± 0.31": error to two significant digits, value to the same decimal. Without a finite, positive error the
 /// value alone with four significant digits.
 std::string with_error(double value, double standard_error);
+/// "lower … upper" of value -+ half_width, with the digits of the half width's leading two; empty when it is not finite.
+std::string interval_text(double value, double half_width);
 
 /// Relative difference of `ours` from `reference` as "+1.2 %"; kNoNumber when undefined.
 std::string percent_difference(double ours, double reference);

@@ -10,7 +10,7 @@ namespace grainlaw::app {
 /// it) and InvalidInput when one cannot be read.
 void write_report(const std::filesystem::path& dir, const std::filesystem::path& html);
 
-/// The parameters of `dir` as fixed-width text: parameter, symbol, ours +- standard error, published; words where a
+/// The parameters of `dir` as fixed-width text: parameter, symbol, ours +- standard error, 95 % interval, published; words where a
 /// parameter is not identified. Throws like write_report.
 std::string summary_table(const std::filesystem::path& dir);
 

@@ -8,7 +8,7 @@
 
 namespace grainlaw::app::report {
 
-/// Every parameter: meaning, symbol, equation, ours +- one standard error, published, relative difference.
+/// Every parameter: meaning, symbol, equation, ours +- one standard error, 95 % interval, published, relative difference.
 Table parameter_comparison(const fit::Calibration& calibration);
 /// What the parameters mean: C*, phi_r, P*, s_max, beta_s, F_max, beta_F at round densities of the calibrated range.
 enum class CurveGroup { law, steady_state };

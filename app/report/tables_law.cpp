@@ -47,19 +47,23 @@ Table parameter_comparison(const fit::Calibration& calibration) {
   Table table;
   table.caption = "Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)";
   table.source = "parameters.json";
-  table.columns = {words(plain("parameter")),    symbol(plain("symbol")),
-                   symbol(plain("Eq.")),         quantity(plain("ours ± standard error")),
-                   quantity(plain("published")), quantity(plain("difference")),
+  table.columns = {words(plain("parameter")),
+                   symbol(plain("symbol")),
+                   symbol(plain("Eq.")),
+                   quantity(plain("ours ± standard error")),
+                   quantity(plain("95 % interval")),
+                   quantity(plain("published")),
+                   quantity(plain("difference")),
                    words(plain("note"))};
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const ParameterInfo& info = parameter_table()[i];
     const fit::Estimate& estimate = calibration.estimates[i];
     const bool known = estimate.status != fit::Status::not_identified;
     const double published = info.published.value_or(kUndefined);
-    table.rows.push_back({plain(info.name), paper_symbol(info.symbol), equation_text(info.equation),
-                          plain(estimate_text(estimate)), number(published, 5),
-                          plain(percent_difference(known ? estimate.value : kUndefined, published)),
-                          plain(estimate.note)});
+    table.rows.push_back(
+        {plain(info.name), paper_symbol(info.symbol), equation_text(info.equation), plain(estimate_text(estimate)),
+         plain(interval_text(estimate.value, estimate.half_width())), number(published, 5),
+         plain(percent_difference(known ? estimate.value : kUndefined, published)), plain(estimate.note)});
   }
   return table;
 }
@@ -94,14 +98,15 @@ Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
 }
 
 std::string parameter_summary(const fit::Calibration& calibration) {
-  std::string text =
-      fmt::format("{:<28} {:<14} {:>26} {:>10}\n", "parameter", "symbol", "ours ± standard error", "published");
-  text += std::string(81, '-') + "\n";
+  std::string text = fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", "parameter", "symbol", "ours ± standard error",
+                                 "95 % interval", "published");
+  text += std::string(104, '-') + "\n";
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const ParameterInfo& info = parameter_table()[i];
     const std::string published = info.published ? significant(*info.published, 5) : kNoNumber;
-    text += fmt::format("{:<28} {:<14} {:>26} {:>10}\n", info.name, info.symbol,
-                        estimate_text(calibration.estimates[i]), published);
+    const fit::Estimate& estimate = calibration.estimates[i];
+    text += fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", info.name, info.symbol, estimate_text(estimate),
+                        interval_text(estimate.value, estimate.half_width()), published);
   }
   return text;
 }

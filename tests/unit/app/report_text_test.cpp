@@ -55,6 +55,10 @@ TEST(ReportNumbers, ErrorsHaveTwoDigitsAndValuesTheSameDecimals) {
   EXPECT_EQ(with_error(-1.5, 0.1), "\u22121.50 ± 0.10");
   EXPECT_EQ(with_error(0.6653, std::nan("")), "0.6653");
   EXPECT_EQ(with_error(0.6653, 0), "0.6653");
+  EXPECT_EQ(interval_text(8.2719, 0.3149), "7.96 … 8.59");
+  EXPECT_EQ(interval_text(0.0417249, 0.00021), "0.04151 … 0.04193");
+  EXPECT_EQ(interval_text(5432.1, 120), "5312 … 5552");
+  EXPECT_EQ(interval_text(0.6653, std::nan("")), "");
 }
 
 TEST(ReportNumbers, NothingUndefinedIsPrinted) {

@@ -45,7 +45,8 @@ fit::Calibration odd_calibration() {
   const auto values = fields(c.parameters);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     *values[i] = std::nextafter(*values[i] * (1 - 1e-3 / 7), 0.0);
-    c.estimates[i] = {*values[i], 0.1 / static_cast<double>(i + 3), fit::Status::fitted, i % 2 ? "a note" : ""};
+    c.estimates[i] = {*values[i], 0.1 / static_cast<double>(i + 3), fit::Status::fitted, i % 2 ? "a note" : "",
+                      1 + 1.0 / static_cast<double>(i + 3)};
     for (std::size_t j = 0; j < kParameterCount; ++j) {
       c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
           (i == j ? 1 : 0.1) / static_cast<double>(i + j + 3);
@@ -55,6 +56,7 @@ fit::Calibration odd_calibration() {
     const std::size_t i = parameter_index(name);
     c.estimates[i].status = status;
     c.estimates[i].standard_error = std::nan("");
+    c.estimates[i].degrees_of_freedom = std::nan("");
     c.covariance.row(static_cast<Eigen::Index>(i)).setZero();
     c.covariance.col(static_cast<Eigen::Index>(i)).setZero();
   };
@@ -161,6 +163,7 @@ void expect_same(const fit::Calibration& a, const fit::Calibration& b) {
     EXPECT_EQ(std::memcmp(x[i], y[i], sizeof(double)), 0) << parameter_table()[i].name;
     if (!std::isnan(a.estimates[i].standard_error)) {
       EXPECT_EQ(a.estimates[i].standard_error, b.estimates[i].standard_error);
+      EXPECT_EQ(a.estimates[i].degrees_of_freedom, b.estimates[i].degrees_of_freedom);
     }
   }
   EXPECT_EQ(a.covariance, b.covariance);

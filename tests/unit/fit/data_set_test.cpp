@@ -63,16 +63,18 @@ TEST(DataSet, IsotropicLoadingIsKnownAndNotUsed) {
   EXPECT_EQ(check_and_sort(tests).unused, std::vector<std::string>{"iso-loading"});
 }
 
-TEST(DataSet, RunsFromOneKeptStateAreOneCluster) {
+TEST(DataSet, RunsOfOneSeedAreOnePacking) {
   testing::SyntheticOptions options;
   options.densities = {0.70, 0.74};
   options.rows = 8;
   const std::vector<TestRecord> tests = testing::synthetic_dataset(testing::synthetic_truth(), options);
   const DataSet data = check_and_sort(tests);
+  EXPECT_EQ(packing_count(data), 2);
   for (const TestRecord& a : tests) {
+    EXPECT_LT(packing_of(data, a), 2);
     for (const TestRecord& b : tests) {
-      const bool same_state = a.packing.seed == b.packing.seed && a.path.nu == b.path.nu;
-      EXPECT_EQ(cluster_of(data, a) == cluster_of(data, b), same_state) << a.name << " " << b.name;
+      EXPECT_EQ(packing_of(data, a) == packing_of(data, b), a.packing.seed == b.packing.seed)
+          << a.name << " " << b.name;
     }
   }
 }

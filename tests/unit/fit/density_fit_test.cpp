@@ -89,7 +89,7 @@ TEST(DensityFit, OneSeriesHasValuesButNoErrors) {
     for (const NamedEstimate& e : fit.stage.estimates) {
       EXPECT_EQ(e.estimate.status, Status::fitted) << e.name;
       EXPECT_TRUE(std::isnan(e.estimate.standard_error)) << e.name;
-      EXPECT_NE(e.estimate.note.find("single run"), std::string::npos) << e.name;
+      EXPECT_NE(e.estimate.note.find("single packing"), std::string::npos) << e.name;
     }
   }
 }

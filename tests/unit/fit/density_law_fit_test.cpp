@@ -84,7 +84,7 @@ TEST(DensityLawFit, FewerDensitiesMeetTheirValuesButIdentifyNothing) {
         EXPECT_TRUE(std::isnan(e.estimate.standard_error)) << e.name;
         EXPECT_FALSE(e.estimate.note.empty());
       }
-      EXPECT_EQ(fit.covariance.norm(), 0);
+      EXPECT_EQ(fit.covariance().norm(), 0);
       for (const ShearFit& f : fits) {
         const double value = (f.*q.estimate).value;
         EXPECT_NEAR((law.*q.law).value(f.nu, law.shear_nu_c), value, 1e-5 * value) << q.name;

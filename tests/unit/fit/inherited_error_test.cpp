@@ -9,6 +9,7 @@ namespace {
 
 constexpr int kRows = 20;
 constexpr double kSlope = 3;  // of the second stage's misfit in the first one's parameter
+const Eigen::VectorXd kFour = Eigen::VectorXd::Constant(1, 4);  // degrees of freedom of five packings
 
 /// Blocks of x[0] + shift - value, one for each run, whose rows all hold its value.
 std::vector<ResidualBlock> blocks_of(const std::vector<double>& values, double shift) {
@@ -46,9 +47,10 @@ TEST(InheritedError, IsThatOfBothStepsTogether) {
     for (std::size_t c = 0; c < x.size(); ++c) mean += (y[c] - kSlope * x[c]) / 5;
     for (std::size_t c = 0; c < x.size(); ++c) expected += std::pow(y[c] - kSlope * x[c] - mean, 2) / (5 * 4);
     EXPECT_NEAR(b.solution.x(0), mean, 1e-9);
-    inherit_error(a, "a", Eigen::VectorXd::Constant(5 * kRows, kSlope), b);
-    EXPECT_NEAR(variance(b), expected, 1e-6 * expected);
-    EXPECT_NEAR(b.covariance(0, 0), expected, 1e-6 * expected);
+    inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, kFour, b);
+    EXPECT_NEAR(variance(b), expected, 1e-9 * expected);
+    EXPECT_NEAR(b.covariance()(0, 0), expected, 1e-9 * expected);
+    EXPECT_NEAR(b.stage.estimates[0].estimate.degrees_of_freedom, 4, 1e-9);
   }
 }
 
@@ -56,11 +58,44 @@ TEST(InheritedError, NothingChangesWithoutAnErrorToInherit) {
   const std::vector<double> y{2.0, 2.1, 1.8, 2.2, 1.9};
   StageFit a = mean_of("a", {1.0, 1.4, 0.7, 1.1, 0.9}, 0), b = mean_of("b", y, 0);
   const double before = variance(b);
-  inherit_error(a, "a", Eigen::VectorXd::Zero(5 * kRows), b);
+  inherit_error(Eigen::VectorXd::Zero(5 * kRows), a.influence, kFour, b);
   EXPECT_EQ(variance(b), before) << "no slope";
   a.mark_not_identified("a", "for the test");
-  inherit_error(a, "a", Eigen::VectorXd::Constant(5 * kRows, kSlope), b);
+  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, kFour, b);
   EXPECT_EQ(variance(b), before) << "not identified";
+}
+
+TEST(InheritedError, TheFewerPackingsDecide) {
+  const StageFit a = mean_of("a", {1.0, 1.4, 0.7}, 0);  // the second stage has five
+  StageFit b = mean_of("b", {2.0, 2.1, 1.8, 2.2, 1.9}, kSlope * a.solution.x(0));
+  const Eigen::RowVectorXd own = b.influence.row(0);
+  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, Eigen::VectorXd::Constant(1, 2), b);
+  EXPECT_EQ(b.stage.estimates[0].estimate.degrees_of_freedom, 2);
+  Eigen::RowVectorXd expected = own;
+  expected.head(3) -= kSlope * a.influence.row(0);
+  EXPECT_NEAR((b.influence.row(0) - expected).norm(), 0, 1e-9);
+}
+
+// Slopes by difference quotients: the second stage's blocks with another law as given, here x0 + 3 D - value.
+TEST(InheritedError, SlopesOfALawAreFoundByDifferences) {
+  const std::vector<double> x{1.0, 1.4, 0.7, 1.1, 0.9}, y{1.8, 0.9, 2.9, 1.6, 2.4};
+  const StageFit a = mean_of("overlap.D", x, 0);
+  LawParameters<double> law = start_parameters();
+  law.overlap_D = a.solution.x(0);
+  StageFit by_difference = mean_of("b", y, kSlope * law.overlap_D), by_slope = by_difference;
+  FoundErrors found = no_errors(5);
+  const auto D = static_cast<Eigen::Index>(parameter_index("overlap.D"));
+  found.influence.row(D) = a.influence.row(0);
+  found.degrees_of_freedom(D) = 4;
+  inherit_error(
+      {"overlap"}, found, law,
+      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, by_difference);
+  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, kFour, by_slope);
+  EXPECT_NEAR((by_difference.influence - by_slope.influence).norm(), 0, 1e-8 * by_slope.influence.norm());
+  inherit_error(
+      {"fabric"}, found, law,
+      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, by_slope);
+  EXPECT_NEAR((by_difference.influence - by_slope.influence).norm(), 0, 1e-8 * by_slope.influence.norm()) << "no error";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "model/error.hpp"
 
@@ -39,7 +40,7 @@ TEST(StageFit, SaysWhatIsNotDeterminedAndHowTestsAreMet) {
     EXPECT_EQ(e.estimate.note, "separate them");
     EXPECT_TRUE(std::isnan(e.estimate.standard_error));
   }
-  EXPECT_EQ(fit.covariance.norm(), 0);
+  EXPECT_EQ(fit.covariance().norm(), 0);
   // x0 + x1 = 2: misfits +1, -1 in the unit of the data, whatever the weight; -3 where it is only shown. To 1e-8: beyond
   // the square root of machine precision the cost no longer feels a change of x.
   ASSERT_EQ(fit.stage.tests.size(), 3u);
@@ -85,9 +86,13 @@ TEST(StageFit, ClaimsCanBeWithdrawn) {
   // Mean of two runs, 1 and 3: standard error 1.
   EXPECT_EQ(fit.stage.estimates[0].estimate.status, Status::fitted);
   EXPECT_NEAR(fit.stage.estimates[0].estimate.standard_error, 1, 1e-8);
+  EXPECT_NEAR(fit.stage.estimates[0].estimate.degrees_of_freedom, 1, 1e-8);
+  // Student's t of one degree of freedom is Cauchy's distribution: tan(pi (0.975 - 1/2)).
+  EXPECT_NEAR(fit.stage.estimates[0].estimate.half_width(), std::tan(std::numbers::pi * 0.475), 1e-6);
   fit.mark_not_identified("one", "because");
   EXPECT_EQ(fit.stage.estimates[0].estimate.status, Status::not_identified);
-  EXPECT_EQ(fit.covariance.norm(), 0);
+  EXPECT_TRUE(std::isnan(fit.stage.estimates[0].estimate.half_width()));
+  EXPECT_EQ(fit.covariance().norm(), 0);
   EXPECT_THROW(fit.mark_not_identified("three", ""), Error);
 }
 

@@ -25,7 +25,7 @@ const std::vector<TestRecord>& records() {
     options.densities = {0.68, 0.70, 0.74, 0.80};
     options.rows = 100;
     std::vector<TestRecord> clean = testing::synthetic_dataset(testing::synthetic_truth(), options);
-    testing::WhiteNoise noise(0.005, 7);
+    testing::RowNoise noise(0.005, 7);
     for (TestRecord& test : clean) noise.add_to(test);
     return clean;
   }();
