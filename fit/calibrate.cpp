@@ -81,7 +81,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
                       const RunControl& control) {
   check(options);
   const DataSet data = check_and_sort(tests);
-  Calibration calibration = nothing_known(packing_count(data));
+  Calibration calibration = nothing_known();
   calibration.coupling = options.coupling;
   calibration.unused_tests = data.unused;
   calibration.warnings = outlier_warnings(data, options);

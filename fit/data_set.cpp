@@ -75,12 +75,6 @@ bool shears(const TestRecord& test) {
   });
 }
 
-std::set<std::uint64_t> seeds_of(const DataSet& data) {
-  std::set<std::uint64_t> seeds;
-  for (const TestRecord* test : data.all_used()) seeds.insert(test->packing.seed);
-  return seeds;
-}
-
 }  // namespace
 
 std::vector<const TestRecord*> DataSet::all_used() const {
@@ -124,10 +118,9 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
 }
 
 int packing_of(const DataSet& data, const TestRecord& test) {
-  const std::set<std::uint64_t> seeds = seeds_of(data);
+  std::set<std::uint64_t> seeds;
+  for (const TestRecord* used : data.all_used()) seeds.insert(used->packing.seed);
   return static_cast<int>(std::distance(seeds.begin(), seeds.find(test.packing.seed)));
 }
-
-int packing_count(const DataSet& data) { return static_cast<int>(seeds_of(data).size()); }
 
 }  // namespace grainlaw::fit

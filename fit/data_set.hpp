@@ -25,6 +25,5 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role = Role::c
 
 /// Independent of one another are packings (seeds), not the runs that start from one: the test's packing, from 0.
 int packing_of(const DataSet& data, const TestRecord& test);
-int packing_count(const DataSet& data);
 
 }  // namespace grainlaw::fit

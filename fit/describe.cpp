@@ -38,7 +38,7 @@ std::vector<Description> describe(const std::vector<TestRecord>& tests, double n
   std::size_t points = 0;
   for (const DensitySeries& s : series) points += s.points.size();
   if (points >= kPointsNeeded) {
-    Calibration calibration = nothing_known(packing_count(data));
+    Calibration calibration = nothing_known();
     fit_unloading_laws("UNI unloading", series, calibration, options, control);
     calibration.nu_min = least_nu(series);
     for (const DensitySeries& s : series) {
@@ -54,7 +54,7 @@ std::vector<Description> describe(const std::vector<TestRecord>& tests, double n
         return test->path.segments.front().mode != mode || test->path.branch != branch;
       });
       if (part.pure_shear.empty()) continue;
-      Calibration calibration = nothing_known(packing_count(data));
+      Calibration calibration = nothing_known();
       calibration.parameters.isotropic.pressure.nu_c = nu_c;
       fit_steady_laws(mode, part, calibration, options, control);
       fit_shear_laws(part, calibration, options, control);

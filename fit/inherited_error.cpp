@@ -37,9 +37,16 @@ Eigen::MatrixXd slopes(const std::vector<std::size_t>& index, const LawParameter
 
 }  // namespace
 
-FoundErrors no_errors(int packings) {
+FoundErrors no_errors() {
   constexpr auto n = static_cast<Eigen::Index>(kParameterCount);
-  return {Eigen::MatrixXd::Zero(n, packings), Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN())};
+  return {Eigen::MatrixXd::Zero(n, 0), Eigen::VectorXd::Constant(n, std::numeric_limits<double>::quiet_NaN())};
+}
+
+void widen(Eigen::MatrixXd& influence, Eigen::Index packings) {
+  const Eigen::Index before = influence.cols();
+  if (before >= packings) return;
+  influence.conservativeResize(Eigen::NoChange, packings);
+  influence.rightCols(packings - before).setZero();
 }
 
 void inherit_error(const Eigen::MatrixXd& slope, const Eigen::MatrixXd& influence,
@@ -50,11 +57,7 @@ void inherit_error(const Eigen::MatrixXd& slope, const Eigen::MatrixXd& influenc
   free.flip();
   const auto& w = solution.weight;
   const Eigen::MatrixXd moved = response(w.asDiagonal() * solution.jacobian, free, w.asDiagonal() * slope) * influence;
-  const Eigen::Index packings = second.influence.cols();
-  if (packings < influence.cols()) {  // of packings that the stage does not read
-    second.influence.conservativeResize(Eigen::NoChange, influence.cols());
-    second.influence.rightCols(influence.cols() - packings).setZero();
-  }
+  widen(second.influence, influence.cols());
   for (Eigen::Index i = 0; i < second.influence.rows(); ++i) {
     Estimate& estimate = second.stage.estimates[static_cast<std::size_t>(i)].estimate;
     if (!std::isfinite(estimate.standard_error)) continue;

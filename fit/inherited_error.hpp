@@ -20,7 +20,10 @@ struct FoundErrors {
 
   Eigen::MatrixXd covariance() const { return influence * influence.transpose(); }
 };
-FoundErrors no_errors(int packings);
+FoundErrors no_errors();
+
+/// Adds columns of zeros for packings that did not take part, up to `packings` columns.
+void widen(Eigen::MatrixXd& influence, Eigen::Index packings);
 
 /// Adds to the errors of `second`. `slope`: rows of its misfit x given, `influence`: given x packings. Degrees of freedom:
 /// the smallest of its own and `degrees_of_freedom`'s. Nothing changes where the given parameters have no error.

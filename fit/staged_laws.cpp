@@ -11,10 +11,10 @@
 
 namespace grainlaw::fit {
 
-Calibration nothing_known(int packings) {
+Calibration nothing_known() {
   Calibration calibration;
   calibration.parameters = start_parameters();
-  calibration.errors = no_errors(packings);
+  calibration.errors = no_errors();
   calibration.covariance = calibration.errors.covariance();
   calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c,
                                                           std::numeric_limits<double>::quiet_NaN(), Status::fixed,
@@ -24,6 +24,7 @@ Calibration nothing_known(int packings) {
 
 void record(Calibration& calibration, const StageFit& fit) {
   calibration.stages.push_back(fit.stage);
+  widen(calibration.errors.influence, fit.influence.cols());
   for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
     const NamedEstimate& e = fit.stage.estimates[k];
     const auto i = static_cast<Eigen::Index>(parameter_index(e.name)), row = static_cast<Eigen::Index>(k);

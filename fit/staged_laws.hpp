@@ -12,7 +12,7 @@
 namespace grainlaw::fit {
 
 /// Parameters at their start, nothing identified but the fixed nu_c of Eq. (20), no stages, no errors.
-Calibration nothing_known(int packings = 0);
+Calibration nothing_known();
 
 /// Takes over what a stage says; it replaces what earlier ones said of the same parameters.
 void record(Calibration& calibration, const StageFit& fit);

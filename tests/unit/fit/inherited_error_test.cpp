@@ -83,7 +83,8 @@ TEST(InheritedError, SlopesOfALawAreFoundByDifferences) {
   LawParameters<double> law = start_parameters();
   law.overlap_D = a.solution.x(0);
   StageFit by_difference = mean_of("b", y, kSlope * law.overlap_D), by_slope = by_difference;
-  FoundErrors found = no_errors(5);
+  FoundErrors found = no_errors();
+  widen(found.influence, 5);
   const auto D = static_cast<Eigen::Index>(parameter_index("overlap.D"));
   found.influence.row(D) = a.influence.row(0);
   found.degrees_of_freedom(D) = 4;
