@@ -51,6 +51,11 @@ struct Cvode::Impl {
   Owned<SUNMatrix, SUNMatDestroy> matrix;
   Owned<SUNLinearSolver, SUNLinSolFree> linear;
   Owned<SUNNonlinearSolver, SUNNonlinSolFree> nonlinear;
+  OdeSensitivities sensitivities;
+  std::vector<Owned<N_Vector, N_VDestroy>> slopes;  // dy/dp of each parameter
+  std::vector<N_Vector> slope_handles;              // as the library takes them
+  Owned<SUNNonlinearSolver, SUNNonlinSolFree> slopes_nonlinear;
+  bool carried = false;  // since the last start()
   Owned<void*, free_memory> memory;
 
   std::string message;         // what the solver said last
@@ -66,6 +71,19 @@ struct Cvode::Impl {
     std::fill_n(out, self.size, std::numeric_limits<double>::quiet_NaN());
     try {
       self.rate(t, N_VGetArrayPointer(y), out);
+    } catch (...) {
+      self.thrown = std::current_exception();
+      return kGiveUp;
+    }
+    return std::all_of(out, out + self.size, [](double v) { return std::isfinite(v); }) ? 0 : kTryAgain;
+  }
+
+  static int evaluate_sensitivity_rate(int, realtype t, N_Vector y, N_Vector, int k, N_Vector s, N_Vector rate,
+                                       void* user, N_Vector, N_Vector) {
+    auto& self = *static_cast<Impl*>(user);
+    double* out = N_VGetArrayPointer(rate);
+    try {
+      self.sensitivities.rate(static_cast<std::size_t>(k), t, N_VGetArrayPointer(y), N_VGetArrayPointer(s), out);
     } catch (...) {
       self.thrown = std::current_exception();
       return kGiveUp;
@@ -123,6 +141,8 @@ struct Cvode::Impl {
   }
 
   void initialise(double t_0, const Tolerances& tolerances);
+  void initialise_sensitivities(Method method);
+  void restart_sensitivities(std::span<const double> from);
 };
 
 namespace {
@@ -166,26 +186,60 @@ void Cvode::Impl::initialise(double t_0, const Tolerances& tolerances) {
   }
 }
 
-Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event, OdeScale scale)
+/// Called before any sensitivity is wanted: start() turns them on.
+void Cvode::Impl::initialise_sensitivities(Method method) {
+  void* const cvode = memory.get();
+  const auto count = static_cast<int>(sensitivities.magnitudes.size());
+  for (int k = 0; k < count; ++k) {
+    slopes.emplace_back(created(N_VClone(y.get()), "a sensitivity"));
+    N_VConst(0, slopes.back().get());
+    slope_handles.push_back(slopes.back().get());
+  }
+  require(CVodeSensInit1(cvode, count, CV_STAGGERED, evaluate_sensitivity_rate, slope_handles.data()),
+          "CVodeSensInit1");
+  require(CVodeSetSensParams(cvode, nullptr, sensitivities.magnitudes.data(), nullptr), "CVodeSetSensParams");
+  require(CVodeSensEEtolerances(cvode), "CVodeSensEEtolerances");
+  if (method == Method::adams) {
+    slopes_nonlinear.reset(created(SUNNonlinSol_FixedPointSens(count, y.get(), 0, context.get()), "the iteration"));
+    require(CVodeSetNonlinearSolverSensStg(cvode, slopes_nonlinear.get()), "CVodeSetNonlinearSolverSensStg");
+  }
+}
+
+void Cvode::Impl::restart_sensitivities(std::span<const double> from) {
+  carried = !from.empty();
+  if (!carried) {
+    require(CVodeSensToggleOff(memory.get()), "CVodeSensToggleOff");
+    return;
+  }
+  for (std::size_t k = 0; k < slopes.size(); ++k)
+    std::copy_n(&from[k * size], size, N_VGetArrayPointer(slope_handles[k]));
+  require(CVodeSensReInit(memory.get(), CV_STAGGERED, slope_handles.data()), "CVodeSensReInit");
+}
+
+Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event, OdeScale scale,
+             OdeSensitivities sensitivities)
     : impl_(std::make_unique<Impl>()) {
   Impl& self = *impl_;
   self.size = size;
   self.rate = std::move(rate);
   self.event = std::move(event);
   self.scale = std::move(scale);
+  self.sensitivities = std::move(sensitivities);
   self.y.reset(new_state_vector(size, self.context.get()));
   self.memory.reset(created(CVodeCreate(tolerances.method == Method::adams ? CV_ADAMS : CV_BDF, self.context.get()),
                             "the memory of CVODE"));
   self.initialise(0, tolerances);
+  if (!self.sensitivities.magnitudes.empty()) self.initialise_sensitivities(tolerances.method);
 }
 
 Cvode::~Cvode() = default;
 
-void Cvode::start(double t, std::span<const double> y, double t_stop) {
+void Cvode::start(double t, std::span<const double> y, double t_stop, std::span<const double> sensitivities) {
   Impl& self = *impl_;
   accumulate(self.finished, self.since_start());
   std::copy(y.begin(), y.end(), N_VGetArrayPointer(self.y.get()));
   self.require(CVodeReInit(self.memory.get(), t, self.y.get()), "CVodeReInit");
+  if (!self.slopes.empty()) self.restart_sensitivities(sensitivities);
   self.require(CVodeSetStopTime(self.memory.get(), t_stop), "CVodeSetStopTime");
   self.initialised = true;
   ++self.finished.restarts;
@@ -213,12 +267,26 @@ Arrival Cvode::advance(double t, std::span<double> y) {
   if (self.step_vanished) return failure("the step of CVODE vanished: " + self.message);
   if (!finite) return failure(fmt::format("CVODE returned {} with a state that is not finite", flag));
   const bool at_event = flag == CV_ROOT_RETURN;
+  if (self.carried) {
+    double t_s = std::numeric_limits<double>::quiet_NaN();
+    self.require(CVodeGetSens(self.memory.get(), &t_s, self.slope_handles.data()), "CVodeGetSens");
+    for (const N_Vector slope : self.slope_handles) {
+      const double* const at = N_VGetArrayPointer(slope);
+      if (!std::all_of(at, at + self.size, [](double v) { return std::isfinite(v); }))
+        return failure("CVODES gave a sensitivity that is not finite");
+    }
+  }
   if (at_event ? !(reached >= self.t && reached <= t) : reached != t) {
     return failure(fmt::format("CVODE returned {} at t = {} instead of {}", flag, reached, t));
   }
   std::copy_n(state, self.size, y.begin());
   self.t = reached;
   return {at_event ? Arrival::Kind::event : Arrival::Kind::reached, reached, {}};
+}
+
+void Cvode::sensitivities(std::span<double> out) const {
+  for (std::size_t k = 0; (k + 1) * impl_->size <= out.size(); ++k)
+    std::copy_n(N_VGetArrayPointer(impl_->slope_handles[k]), impl_->size, &out[k * impl_->size]);
 }
 
 SolverStatistics Cvode::statistics() const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "predict/predict.hpp"
 
@@ -22,6 +23,16 @@ using OdeEvent = std::function<double(double t, const double* y)>;
 /// Writes for each unknown the magnitude at (t, y) that the relative tolerance refers to. May be empty: |y| then.
 using OdeScale = std::function<void(double t, const double* y, double* scale)>;
 
+/// Writes the rate (df/dy) s + df/dp_k at (t, y) of the sensitivity s = dy/dp_k. May throw.
+using OdeSensitivityRate = std::function<void(std::size_t k, double t, const double* y, const double* s, double* rate)>;
+
+/// dy/dp_k, carried along beside y: corrected after each step of y, which is made shorter where that fails but not for
+/// their error: that follows y's.
+struct OdeSensitivities {
+  std::vector<double> magnitudes;  ///< of each p_k: what the tolerance of its sensitivity refers to, positive
+  OdeSensitivityRate rate;
+};
+
 /// How one call of Cvode::advance ended.
 struct Arrival {
   enum class Kind { reached, event, failed } kind = Kind::failed;
@@ -32,20 +43,25 @@ struct Arrival {
 class Cvode {
  public:
   /// `size` unknowns. Throws Error when memory runs out or an option is refused.
-  Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event = {}, OdeScale scale = {});
+  Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event = {}, OdeScale scale = {},
+        OdeSensitivities sensitivities = {});
   ~Cvode();
   Cvode(const Cvode&) = delete;
   Cvode& operator=(const Cvode&) = delete;
 
   /// (Re-)initialises at (t, y); the right-hand side is never evaluated beyond `t_stop` > t. Forgets all history.
-  void start(double t, std::span<const double> y, double t_stop);
+  /// `sensitivities`: dy/dp_k at t, one after the other, or empty: none are carried along from here.
+  void start(double t, std::span<const double> y, double t_stop, std::span<const double> sensitivities = {});
 
   /// Integrates to `t`, within [t of the previous call, t_stop] and after that of start(). `y` holds the state there,
   /// at the event, or NaN after a failure; start() again before going on from either of these. Exceptions of the rate
   /// pass through.
   Arrival advance(double t, std::span<double> y);
 
-  /// Work of all starts together (without `seconds`).
+  /// Copies dy/dp_k, one after the other, at the place of the last advance().
+  void sensitivities(std::span<double> out) const;
+
+  /// Work of all starts together (without `seconds` and what the sensitivities take).
   SolverStatistics statistics() const;
 
  private:

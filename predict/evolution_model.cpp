@@ -7,7 +7,7 @@
 namespace grainlaw::predict {
 
 PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
-                             const std::vector<StraightSegment>& segments, const LawState<double>& start,
+                             const std::vector<StraightSegment>& segments, const PathStart& start,
                              const std::vector<OutputPoint>& points, const Tolerances& tolerances,
                              const RunControl& control) {
   PathStates out;
@@ -20,6 +20,7 @@ PathStates integrated_states(const LawParameters<double>& parameters, Rung rung,
       if (control.stop.stop_requested()) throw Interrupted("the prediction was interrupted");
       integration.advance(points[next].e);
       out.states.push_back(integration.state());
+      if (!start.steps.empty()) out.slopes.push_back(integration.slopes());
     }
     if (next < points.size()) integration.advance(segments[k].length);
   }

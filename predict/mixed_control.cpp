@@ -21,16 +21,13 @@ constexpr std::size_t kSize = kUnknowns + 7;  // the law's, six strains, shear p
 constexpr double kVanished = 1e-12;           // of the start's P: unjammed
 
 void put(const ControlledState& y, double* out) {
-  out[0] = y.law.P;
-  deviator_at(out + 1) = y.law.sigma;
-  deviator_at(out + 6) = y.law.F;
-  deviator_at(out + 11) = y.law.s_r;
+  std::ranges::copy(packed(y.law), out);
   for (std::size_t c = 0; c < 6; ++c) out[kUnknowns + c] = y.strain(kComponentIndex[c][0], kComponentIndex[c][1]);
   out[kSize - 1] = y.shear_path;
 }
 
 ControlledState taken(const double* y) {
-  ControlledState state{{y[0], deviator_at(y + 1), deviator_at(y + 6), deviator_at(y + 11)}, {}, y[kSize - 1]};
+  ControlledState state{unpacked(y), {}, y[kSize - 1]};
   for (std::size_t c = 0; c < 6; ++c) {
     const auto [i, j] = kComponentIndex[c];
     state.strain(i, j) = state.strain(j, i) = y[kUnknowns + c];

@@ -32,6 +32,17 @@ constexpr int kMostEventsInPlace = 20;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+std::vector<double> magnitudes_of(const std::vector<ParameterStep>& steps) {
+  std::vector<double> magnitudes;
+  for (const ParameterStep& step : steps) magnitudes.push_back(step.magnitude);
+  return magnitudes;
+}
+
+/// One after the other.
+std::span<double> flat(std::vector<Slope>& slopes) {
+  return slopes.empty() ? std::span<double>() : std::span(slopes.front().data(), kUnknowns * slopes.size());
+}
+
 }  // namespace
 
 double least_principal_stress(double P, const Deviator<double>& sigma) {
@@ -41,17 +52,29 @@ double least_principal_stress(double P, const Deviator<double>& sigma) {
 }
 
 PathIntegration::PathIntegration(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
-                                 const LawState<double>& start, const Tolerances& tolerances)
+                                 const PathStart& start, const Tolerances& tolerances)
     : parameters_(parameters),
       rung_(rung),
       coupling_(coupling),
-      P_held_(kHeldPressure * start.P),
-      P_floor_(kVanishedPressure * start.P),
+      P_held_(kHeldPressure * start.state.P),
+      P_floor_(kVanishedPressure * start.state.P),
+      steps_(start.steps),
       solver_(
           kUnknowns, tolerances, [this](double e, const double* y, double* rate) { law_->rate(e, y, rate); },
           [this](double e, const double* y) { return event(e, y); },
-          [this](double e, const double* y, double* scale) { law_->scale(e, y, scale); }),
-      state_(start) {}
+          [this](double e, const double* y, double* scale) { law_->scale(e, y, scale); },
+          {magnitudes_of(start.steps), [this](std::size_t k, double e, const double* y, const double* s,
+                                              double* rate) { sensitivity_->rate(k, e, y, s, rate); }}),
+      state_(start.state) {
+  for (const LawState<double>& slope : start.slopes) slopes_.push_back(packed(slope));
+}
+
+std::vector<LawState<double>> PathIntegration::slopes() const {
+  std::vector<LawState<double>> slopes;
+  for (const Slope& slope : slopes_) slopes.push_back(unpacked(slope.data()));
+  slopes.resize(steps_.size(), unknown_slope());
+  return slopes;
+}
 
 /// Falls through zero where the state unjams or, under spin, reverses.
 double PathIntegration::event(double e, const double* y) const {
@@ -71,18 +94,32 @@ void PathIntegration::note(EventKind kind) {
 void PathIntegration::start_from(const LawState<double>& state) {
   state_ = state;
   at_start_ = law_->unknowns_of(e_, state);
+  slopes_at_start_.clear();
+  for (std::size_t k = 0; k < slopes_.size(); ++k)
+    slopes_at_start_.push_back(sensitivity_->of_unknowns(k, e_, state, slopes_[k]));
   e_start_ = e_;
   started_ = false;
 }
 
 void PathIntegration::enter(const StraightSegment& segment, std::size_t index) {
   law_.emplace(parameters_, rung_, coupling_, segment, P_held_);
+  sensitivity_.emplace(steps_, rung_, coupling_, segment, P_held_);
   index_ = index;
   e_ = 0;
   events_in_place_ = 0;
   jammed_until_ = rung_ == Rung::memory ? kInfinity : jamming_point(segment, parameters_.isotropic.pressure.nu_c);
   if (!jammed_) return;
+  turn(false);
+}
+
+/// Turns the state, and its slopes, where the path does at a corner; where spin does `on_the_way` the slopes end.
+void PathIntegration::turn(bool on_the_way) {
+  const LawState<double> before = state_;
   turn_corner(rung_, state_, law_->direction());
+  if (state_.s_r != before.s_r) {
+    if (on_the_way) slopes_.clear();
+    for (Slope& slope : slopes_) slope = turned_slope(before, slope);
+  }
   start_from(state_);
 }
 
@@ -119,14 +156,20 @@ void PathIntegration::move_jammed(double e) {
     return;
   }
   Unknowns y = at_start_;
+  std::vector<Slope> slopes = slopes_at_start_;
   bool fallen = false;
   if ((target - e_start_) * (segment.direction.tensor + segment.spin).norm() <= kTinyStrain) {
     Unknowns slope;
     law_->rate(e_start_, y.data(), slope.data());
+    for (std::size_t k = 0; k < slopes.size(); ++k) {
+      Slope rate;
+      sensitivity_->rate(k, e_start_, y.data(), slopes[k].data(), rate.data());
+      for (std::size_t i = 0; i < kUnknowns; ++i) slopes[k][i] += (target - e_start_) * rate[i];
+    }
     for (std::size_t i = 0; i < kUnknowns; ++i) y[i] += (target - e_start_) * slope[i];
     e_ = target;
   } else {
-    if (!started_) solver_.start(e_start_, y, std::min(segment.length, jammed_until_));
+    if (!started_) solver_.start(e_start_, y, std::min(segment.length, jammed_until_), flat(slopes));
     started_ = true;
     const Arrival arrival = solver_.advance(target, y);
     if (arrival.kind == Arrival::Kind::failed) {
@@ -136,9 +179,11 @@ void PathIntegration::move_jammed(double e) {
     }
     if (arrival.t > e_) events_in_place_ = 0;
     e_ = arrival.t;
+    solver_.sensitivities(flat(slopes));
     fallen = arrival.kind == Arrival::Kind::event;
   }
   state_ = law_->state_of(e_, y.data());
+  for (std::size_t k = 0; k < slopes.size(); ++k) slopes_[k] = sensitivity_->of_state(k, e_, y, slopes[k]);
   if (fallen || e_ >= jammed_until_ || state_.P <= P_floor_) take_event();
 }
 
@@ -155,12 +200,12 @@ void PathIntegration::take_event() {
   if (vanished || least_principal_stress(state_.P, state_.sigma) <= kRounding * state_.P) {
     note(vanished ? EventKind::unjammed : EventKind::tension);
     jammed_ = false;
+    slopes_.clear();
     nu_J_ = law_->segment().nu(e_);
     state_ = {0, Deviator<double>::Zero(), Deviator<double>::Zero()};
     return;
   }
-  turn_corner(rung_, state_, law_->direction());
-  start_from(state_);
+  turn(true);
 }
 
 }  // namespace grainlaw::predict

@@ -5,14 +5,17 @@
 //   tension   the least principal stress falls to zero before: without cohesion and friction nothing holds the spheres
 //             together across that axis any more, and the packing comes apart as if P had vanished
 //   jammed    nu rises above nu_J, the density at which the state unjammed: from P = tau = F' = 0
-// and, under spin, the reversals of Rung::memory. Unknowns: those of SegmentLaw; independent variable: path parameter e.
+// and, under spin, the reversals of Rung::memory. With the slopes of the state to parameters up to the first event
+// (segment_sensitivity.hpp). Unknowns: those of SegmentLaw; independent variable: path parameter e.
 
 #include <optional>
 #include <vector>
 
 #include "predict/cvode.hpp"
+#include "predict/path_states.hpp"
 #include "predict/predict.hpp"
 #include "predict/segment_law.hpp"
+#include "predict/segment_sensitivity.hpp"
 
 namespace grainlaw::predict {
 
@@ -22,7 +25,7 @@ double least_principal_stress(double P, const Deviator<double>& sigma);
 class PathIntegration {
  public:
   /// The parameters must outlive the object.
-  PathIntegration(const LawParameters<double>& parameters, Rung rung, Coupling coupling, const LawState<double>& start,
+  PathIntegration(const LawParameters<double>& parameters, Rung rung, Coupling coupling, const PathStart& start,
                   const Tolerances& tolerances);
 
   /// Begins the next segment, `index` in the path; it must outlive the stay in it.
@@ -33,6 +36,7 @@ class PathIntegration {
   void advance(double e);
 
   const LawState<double>& state() const { return state_; }  ///< all zero while unjammed
+  std::vector<LawState<double>> slopes() const;             ///< of the state, to each parameter of the start's steps
   bool jammed() const { return jammed_; }
   const std::vector<PathEvent>& events() const { return events_; }
   SolverStatistics statistics() const { return solver_.statistics(); }
@@ -40,6 +44,7 @@ class PathIntegration {
  private:
   double event(double e, const double* y) const;
   void start_from(const LawState<double>& state);
+  void turn(bool on_the_way);
   void move_jammed(double e);
   void move_unjammed(double e);
   void take_event();
@@ -49,9 +54,13 @@ class PathIntegration {
   Rung rung_;
   Coupling coupling_;
   double P_held_, P_floor_;
+  std::vector<ParameterStep> steps_;
   std::optional<SegmentLaw> law_;  // of the segment entered last
+  std::optional<SegmentSensitivity> sensitivity_;
   Cvode solver_;
   LawState<double> state_;
+  std::vector<Slope> slopes_;           // of state_; none once its path is no longer smooth in them
+  std::vector<Slope> slopes_at_start_;  // of the unknowns at_start_
   bool jammed_ = true;
   double nu_J_ = 0;  // while unjammed: where it jams again
   std::vector<PathEvent> events_;

@@ -84,7 +84,39 @@ PredictedRow row_at(const StraightSegment& segment, const OutputPoint& point, do
   return row;
 }
 
+RowSlope slope_of(const LawState<double>& state, const LawState<double>& slope, const Deviator<double>& N) {
+  const auto norm_slope = [](const Deviator<double>& a, const Deviator<double>& b) {
+    const double norm = a.norm();
+    return norm > 0 ? a.dot(b) / norm : b.norm();  // of a norm that leaves zero
+  };
+  RowSlope row;
+  row.state = slope;
+  row.s_dev = (norm_slope(state.sigma, slope.sigma) - state.sigma.norm() / state.P * slope.P) / state.P;
+  row.F_dev = norm_slope(state.F, slope.F);
+  const bool sheared = !N.isZero();
+  row.s_par = sheared ? (slope.sigma - state.sigma * (slope.P / state.P)).dot(N) / state.P : kNaN;
+  row.F_par = sheared ? slope.F.dot(N) : kNaN;
+  return row;
+}
+
+PathStart start_of(const LawParameters<double>& parameters, double nu, const LawState<double>& start,
+                   const Sensitivity& sensitivity) {
+  PathStart result{start, parameter_steps(parameters, sensitivity.parameters), {}};
+  for (const ParameterStep& step : result.steps) {
+    LawState<double> slope{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
+    if (sensitivity.start_from_law)
+      slope.P = (step.above.isotropic.P_star(nu) - step.below.isotropic.P_star(nu)) / (2 * step.h);
+    result.slopes.push_back(slope);
+  }
+  return result;
+}
+
 }  // namespace
+
+LawState<double> unknown_slope() {
+  const Deviator<double> none = Deviator<double>::Constant(kNaN);
+  return {kNaN, none, none, none};
+}
 
 std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const std::vector<PathEvent>& events,
                                      const ValidRange& range) {
@@ -151,14 +183,15 @@ LawState<double> state_from_row(const Observation& row) {
 Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling coupling,
                    const std::vector<StraightSegment>& segments, const LawState<double>& start,
                    const std::vector<OutputPoint>& points, const Tolerances& tolerances, const ValidRange& range,
-                   const RunControl& control) {
+                   const RunControl& control, const Sensitivity& sensitivity) {
   check_tolerances(tolerances);
   check_path(segments, points);
   check_start(parameters, segments.front().nu_start, start);
 
   const auto before = std::chrono::steady_clock::now();
-  const PathStates path = model == Rung::reduced ? reduced_states(parameters, segments, start, points, control)
-                                                 : integrated_states(parameters, model, coupling, segments, start,
+  const PathStart from = start_of(parameters, segments.front().nu_start, start, sensitivity);
+  const PathStates path = model == Rung::reduced ? reduced_states(parameters, segments, from, points, control)
+                                                 : integrated_states(parameters, model, coupling, segments, from,
                                                                      points, tolerances, control);
 
   Prediction prediction;
@@ -185,6 +218,9 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
                       k, points[i].e, to_string(model)));
     }
     prediction.rows.push_back(row_at(segments[k], points[i], path_before, path.states[i], N));
+    if (path.slopes.empty()) continue;
+    std::vector<RowSlope>& slopes = prediction.slopes.emplace_back();
+    for (const LawState<double>& slope : path.slopes[i]) slopes.push_back(slope_of(path.states[i], slope, N));
   }
   prediction.warnings = warnings_of(prediction.rows, prediction.events, range);
   return prediction;

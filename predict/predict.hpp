@@ -3,6 +3,8 @@
 //   reduced:   Eqs. (17), (18) in closed form at the current nu, P by Eq. (14) (Figs. 12, 14 of the paper)
 //   evolution, memory: by CVODE, stopped and re-initialised at each corner of the path, where memory may reverse; after
 //              every call y must be finite and t equal to the requested output
+// On request with the derivatives of every row to parameters of the law: closed form by central differences, the others
+// by CVODES' forward sensitivities (segment_sensitivity.hpp).
 // Dimensionless (*) throughout; strain tension positive, stress and fabric compression positive. The deviators are the
 // 5-vectors of model/tensor.hpp.
 
@@ -66,13 +68,27 @@ struct SolverStatistics {
   double seconds = 0;  ///< wall time of the integration [s]
 };
 
+/// Whose influence on the rows is wanted; nobody's by default, which costs nothing.
+struct Sensitivity {
+  std::vector<std::size_t> parameters;  ///< indices in parameter_table()
+  bool start_from_law = true;           ///< the start is state_from_law() and moves with them; false: it was measured
+};
+
+/// d(row)/d(parameter) at the row's strain, per unit of the parameter. NaN from the first event on whose place moves with
+/// the parameters: where the state unjams, and where Rung::memory reverses under spin within a segment.
+struct RowSlope {
+  LawState<double> state;                             ///< of P*, sigma'*, F', s_r
+  double s_dev = 0, s_par = 0, F_dev = 0, F_par = 0;  ///< s_par, F_par NaN on a path without shear
+};
+
 struct Prediction {
   Rung model = Rung::evolution;
-  std::vector<PredictedRow> rows;  ///< one for each point
+  std::vector<PredictedRow> rows;             ///< one for each point
+  std::vector<std::vector<RowSlope>> slopes;  ///< [row][k] to the k-th parameter asked for; none when none is
   SolverStatistics statistics;
-  std::vector<PathEvent> events;  ///< in their order
-  bool unjammed = false;          ///< P, a principal stress or nu - nu_c fell to zero: the first such event
-  OutputPoint unjammed_at;        ///< where, when `unjammed`
+  std::vector<PathEvent> events;      ///< in their order
+  bool unjammed = false;              ///< P, a principal stress or nu - nu_c fell to zero: the first such event
+  OutputPoint unjammed_at;            ///< where, when `unjammed`
   std::vector<std::string> warnings;  ///< e.g. "nu = 0.85 lies outside the calibrated range 0.68-0.82"
 };
 
@@ -95,6 +111,6 @@ LawState<double> state_from_row(const Observation& row);
 Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling coupling,
                    const std::vector<StraightSegment>& segments, const LawState<double>& start,
                    const std::vector<OutputPoint>& points, const Tolerances& tolerances, const ValidRange& range,
-                   const RunControl& control);
+                   const RunControl& control, const Sensitivity& sensitivity = {});
 
 }  // namespace grainlaw::predict

@@ -2,6 +2,8 @@
 //   q(e) = s_max N - (s_max N - q_0) exp(-beta_s e),   F'(e) = F_max N - (F_max N - F'_0) exp(-beta_F e)
 // so that what does not lie along N decays. e is the deviatoric strain since the corner; parameters at the current nu.
 
+#include <algorithm>
+
 #include "model/error.hpp"
 #include "model/reduced_law.hpp"
 #include "predict/path_states.hpp"
@@ -29,11 +31,8 @@ Ratios ratios_at(const LawParameters<double>& p, const Ratios& corner, const Law
       saturating_tensor(p.fabric_max.value(nu, nu_c) * direction.N, corner.F, p.fabric_rate.value(nu, nu_c), eps_dev)};
 }
 
-}  // namespace
-
-PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
-                          const LawState<double>& start, const std::vector<OutputPoint>& points,
-                          const RunControl& control) {
+PathStates states_of(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
+                     const LawState<double>& start, const std::vector<OutputPoint>& points, const RunControl& control) {
   const double nu_c = parameters.isotropic.pressure.nu_c;
   const Ratios none{Deviator<double>::Zero(), Deviator<double>::Zero()};
   PathStates out;
@@ -68,6 +67,32 @@ PathStates reduced_states(const LawParameters<double>& parameters, const std::ve
           ratios_at(parameters, crosses ? none : corner, direction, segment.nu(segment.length), segment.length - from);
     }
     jammed = jammed != crosses;
+  }
+  return out;
+}
+
+/// a + c b
+LawState<double> moved(const LawState<double>& a, double c, const LawState<double>& b) {
+  return {a.P + c * b.P, a.sigma + c * b.sigma, a.F + c * b.F};
+}
+
+}  // namespace
+
+PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
+                          const PathStart& start, const std::vector<OutputPoint>& points, const RunControl& control) {
+  PathStates out = states_of(parameters, segments, start.state, points, control);
+  if (start.steps.empty()) return out;
+  const auto unjammed = std::ranges::find_if(out.states, [](const LawState<double>& state) { return !(state.P > 0); });
+  out.slopes.assign(points.size(), std::vector(start.steps.size(), unknown_slope()));
+  for (std::size_t k = 0; k < start.steps.size(); ++k) {
+    const auto& [magnitude, h, above, below] = start.steps[k];
+    const auto up = states_of(above, segments, moved(start.state, h, start.slopes[k]), points, control).states;
+    const auto down = states_of(below, segments, moved(start.state, -h, start.slopes[k]), points, control).states;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(unjammed - out.states.begin()); ++i) {
+      const LawState<double> difference = moved(up[i], -1, down[i]),
+                             none{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
+      out.slopes[i][k] = moved(none, 1 / (2 * h), difference);
+    }
   }
   return out;
 }

@@ -23,6 +23,20 @@ using Unknowns = std::array<double, kUnknowns>;
 inline Eigen::Map<Deviator<double>> deviator_at(double* y) { return Eigen::Map<Deviator<double>>(y); }
 inline Eigen::Map<const Deviator<double>> deviator_at(const double* y) { return Eigen::Map<const Deviator<double>>(y); }
 
+/// P, sigma', F', s_r in the order of the unknowns.
+inline Unknowns packed(const LawState<double>& state) {
+  Unknowns y;
+  y[0] = state.P;
+  deviator_at(y.data() + 1) = state.sigma;
+  deviator_at(y.data() + 6) = state.F;
+  deviator_at(y.data() + 11) = state.s_r;
+  return y;
+}
+
+inline LawState<double> unpacked(const double* y) {
+  return {y[0], deviator_at(y + 1), deviator_at(y + 6), deviator_at(y + 11)};
+}
+
 /// The law on one segment, continued harmlessly past the end of the jammed range, where trial steps of a solver look.
 class SegmentLaw {
  public:
@@ -41,18 +55,18 @@ class SegmentLaw {
 
   Unknowns unknowns_of(double e, const LawState<double>& state) const {
     const Place& here = at(e);
-    Unknowns y;
-    y[0] = state.P - here.P_ref;
-    deviator_at(y.data() + 1) = state.sigma - here.g * state.F;
-    deviator_at(y.data() + 6) = state.F;
-    deviator_at(y.data() + 11) = state.s_r;
+    Unknowns y = packed(state);
+    y[0] -= here.P_ref;
+    deviator_at(y.data() + 1) -= here.g * state.F;
     return y;
   }
 
   LawState<double> state_of(double e, const double* y) const {
     const Place& here = at(e);
-    const Deviator<double> tau = deviator_at(y + 1), F = deviator_at(y + 6);
-    return {here.P_ref + y[0], tau + here.g * F, F, deviator_at(y + 11)};
+    LawState<double> state = unpacked(y);
+    state.P += here.P_ref;
+    state.sigma += here.g * state.F;
+    return state;
   }
 
   /// d(state)/de.

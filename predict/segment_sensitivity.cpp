@@ -1,0 +1,58 @@
+#include "predict/segment_sensitivity.hpp"
+
+namespace grainlaw::predict {
+namespace {
+
+/// a + c b.
+Unknowns moved(const double* a, double c, const double* b) {
+  Unknowns sum;
+  for (std::size_t i = 0; i < kUnknowns; ++i) sum[i] = a[i] + c * b[i];
+  return sum;
+}
+
+Slope quotient(const Unknowns& above, const Unknowns& below, double h) {
+  Slope slope;
+  for (std::size_t i = 0; i < kUnknowns; ++i) slope[i] = (above[i] - below[i]) / (2 * h);
+  return slope;
+}
+
+}  // namespace
+
+SegmentSensitivity::SegmentSensitivity(const std::vector<ParameterStep>& steps, Rung rung, Coupling coupling,
+                                       const StraightSegment& segment, double P_held) {
+  for (const ParameterStep& step : steps) {
+    pairs_.push_back({step.h, SegmentLaw(step.above, rung, coupling, segment, P_held),
+                      SegmentLaw(step.below, rung, coupling, segment, P_held)});
+  }
+}
+
+void SegmentSensitivity::rate(std::size_t k, double e, const double* y, const double* s, double* rate) const {
+  const Pair& pair = pairs_[k];
+  Unknowns above, below;
+  pair.above.rate(e, moved(y, pair.h, s).data(), above.data());
+  pair.below.rate(e, moved(y, -pair.h, s).data(), below.data());
+  const Slope slope = quotient(above, below, pair.h);
+  std::copy(slope.begin(), slope.end(), rate);
+}
+
+Slope SegmentSensitivity::of_unknowns(std::size_t k, double e, const LawState<double>& state,
+                                      const Slope& slope) const {
+  const Pair& pair = pairs_[k];
+  const Unknowns at = packed(state);
+  return quotient(pair.above.unknowns_of(e, unpacked(moved(at.data(), pair.h, slope.data()).data())),
+                  pair.below.unknowns_of(e, unpacked(moved(at.data(), -pair.h, slope.data()).data())), pair.h);
+}
+
+Slope SegmentSensitivity::of_state(std::size_t k, double e, const Unknowns& y, const Slope& slope) const {
+  const Pair& pair = pairs_[k];
+  return quotient(packed(pair.above.state_of(e, moved(y.data(), pair.h, slope.data()).data())),
+                  packed(pair.below.state_of(e, moved(y.data(), -pair.h, slope.data()).data())), pair.h);
+}
+
+Slope turned_slope(const LawState<double>& state, Slope slope) {
+  const LawState<double> d = unpacked(slope.data());
+  deviator_at(slope.data() + 11) = (d.sigma - state.sigma * (d.P / state.P)) / state.P;
+  return slope;
+}
+
+}  // namespace grainlaw::predict

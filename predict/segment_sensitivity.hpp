@@ -1,0 +1,44 @@
+#pragma once
+// What the parameters change of a state along a straight segment: S_k = dy/dp_k for each parameter p_k, with
+//   dS_k/de = (df/dy) S_k + df/dp_k = [f(y + h S_k; p_k + h) - f(y - h S_k; p_k - h)]/(2h)
+// f the rate of segment_law.hpp. Its unknowns are a function of state and parameters, so slopes of the state and slopes of
+// the unknowns are turned into one another by the same differences. A reversal at a corner, s_r := s = sigma'/P, has
+// ds_r := ds = (dsigma' - s dP)/P. Events whose place moves with the parameters are not followed: see RowSlope.
+
+#include <vector>
+
+#include "predict/parameter_step.hpp"
+#include "predict/segment_law.hpp"
+
+namespace grainlaw::predict {
+
+/// A slope d/dp of a state, packed(), or of the unknowns.
+using Slope = Unknowns;
+
+class SegmentSensitivity {
+ public:
+  /// As SegmentLaw, with the steps of the parameters that are wanted. The arguments must outlive the object.
+  SegmentSensitivity(const std::vector<ParameterStep>& steps, Rung rung, Coupling coupling,
+                     const StraightSegment& segment, double P_held);
+
+  /// dS_k/de at unknowns `y` and slope `s`, into `rate`.
+  void rate(std::size_t k, double e, const double* y, const double* s, double* rate) const;
+
+  /// Slope of the unknowns where the state has slope `slope`.
+  Slope of_unknowns(std::size_t k, double e, const LawState<double>& state, const Slope& slope) const;
+
+  /// Slope of the state where the unknowns have slope `slope`.
+  Slope of_state(std::size_t k, double e, const Unknowns& y, const Slope& slope) const;
+
+ private:
+  struct Pair {
+    double h;
+    SegmentLaw above, below;
+  };
+  std::vector<Pair> pairs_;
+};
+
+/// Slope after a reversal of `state` at a corner of the path.
+Slope turned_slope(const LawState<double>& state, Slope slope);
+
+}  // namespace grainlaw::predict
