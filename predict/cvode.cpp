@@ -9,10 +9,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 
 #include "model/error.hpp"
+#include "predict/ode_callbacks.hpp"
 #include "predict/state_vector.hpp"
 #include "predict/sundials_handle.hpp"
 
@@ -34,17 +34,10 @@ SUNContext new_context() {
 constexpr double kLocalShare = 0.5;
 constexpr int kMaxAdamsOrder = 6;
 
-constexpr int kTryAgain = 1;  // recoverable: the solver reduces its step
-constexpr int kGiveUp = -1;
-
 }  // namespace
 
-struct Cvode::Impl {
-  std::size_t size;
-  OdeRate rate;
+struct Cvode::Impl : OdeCallbacks {
   OdeEvent event;
-  OdeScale scale;
-  double relative = 0, absolute = 0;  // what the solver is given
   // Destroyed in reverse order: the solver's memory first, the context last.
   Owned<SUNContext, free_context> context{new_context()};
   Owned<N_Vector, N_VDestroy> y;
@@ -58,41 +51,24 @@ struct Cvode::Impl {
   bool carried = false;  // since the last start()
   Owned<void*, free_memory> memory;
 
-  std::string message;         // what the solver said last
-  bool step_vanished = false;  // it warned that t + h == t
-  std::exception_ptr thrown;   // by the user's rate; must not cross the C boundary
   bool initialised = false;
   double t = 0;               // of the last start() or advance()
   SolverStatistics finished;  // work before the last start()
 
-  static int evaluate_rate(realtype t, N_Vector y, N_Vector rate, void* user) {
-    auto& self = *static_cast<Impl*>(user);
-    double* out = N_VGetArrayPointer(rate);
-    std::fill_n(out, self.size, std::numeric_limits<double>::quiet_NaN());
-    try {
-      self.rate(t, N_VGetArrayPointer(y), out);
-    } catch (...) {
-      self.thrown = std::current_exception();
-      return kGiveUp;
-    }
-    return std::all_of(out, out + self.size, [](double v) { return std::isfinite(v); }) ? 0 : kTryAgain;
-  }
+  static Impl& of(void* user) { return static_cast<Impl&>(*static_cast<OdeCallbacks*>(user)); }
+  OdeCallbacks* user() { return this; }
 
   static int evaluate_sensitivity_rate(int, realtype t, N_Vector y, N_Vector, int k, N_Vector s, N_Vector rate,
                                        void* user, N_Vector, N_Vector) {
-    auto& self = *static_cast<Impl*>(user);
-    double* out = N_VGetArrayPointer(rate);
-    try {
+    Impl& self = of(user);
+    double* const out = N_VGetArrayPointer(rate);
+    return self.guarded(out, [&] {
       self.sensitivities.rate(static_cast<std::size_t>(k), t, N_VGetArrayPointer(y), N_VGetArrayPointer(s), out);
-    } catch (...) {
-      self.thrown = std::current_exception();
-      return kGiveUp;
-    }
-    return std::all_of(out, out + self.size, [](double v) { return std::isfinite(v); }) ? 0 : kTryAgain;
+    });
   }
 
   static int evaluate_event(realtype t, N_Vector y, realtype* value, void* user) {
-    auto& self = *static_cast<Impl*>(user);
+    Impl& self = of(user);
     try {
       *value = self.event(t, N_VGetArrayPointer(y));
     } catch (...) {
@@ -100,27 +76,6 @@ struct Cvode::Impl {
       return kGiveUp;
     }
     return std::isfinite(*value) ? 0 : kGiveUp;
-  }
-
-  static int evaluate_weights(N_Vector y, N_Vector weight, void* user) {
-    auto& self = *static_cast<Impl*>(user);
-    double* out = N_VGetArrayPointer(weight);
-    double t = 0;
-    CVodeGetCurrentTime(self.memory.get(), &t);
-    try {
-      self.scale(t, N_VGetArrayPointer(y), out);
-    } catch (...) {
-      self.thrown = std::current_exception();
-      return kGiveUp;
-    }
-    for (std::size_t i = 0; i < self.size; ++i) out[i] = 1 / (self.relative * out[i] + self.absolute);
-    return std::all_of(out, out + self.size, [](double v) { return v > 0 && std::isfinite(v); }) ? 0 : kGiveUp;
-  }
-
-  static void keep_message(int code, const char*, const char*, char* text, void* user) {
-    auto& self = *static_cast<Impl*>(user);
-    self.message = text ? text : "";
-    if (code == CV_WARNING) self.step_vanished = true;  // the only warning of an integration: t + h == t
   }
 
   void require(int flag, const char* call) const {
@@ -158,9 +113,9 @@ void accumulate(SolverStatistics& total, const SolverStatistics& part) {
 
 void Cvode::Impl::initialise(double t_0, const Tolerances& tolerances) {
   void* const cvode = memory.get();
-  require(CVodeSetErrHandlerFn(cvode, keep_message, this), "CVodeSetErrHandlerFn");
+  require(CVodeSetErrHandlerFn(cvode, keep_message, user()), "CVodeSetErrHandlerFn");
   require(CVodeInit(cvode, evaluate_rate, t_0, y.get()), "CVodeInit");
-  require(CVodeSetUserData(cvode, this), "CVodeSetUserData");
+  require(CVodeSetUserData(cvode, user()), "CVodeSetUserData");
   relative = kLocalShare * tolerances.relative;
   absolute = kLocalShare * tolerances.absolute;
   if (scale)
@@ -222,6 +177,11 @@ Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEv
   Impl& self = *impl_;
   self.size = size;
   self.rate = std::move(rate);
+  self.time = [&self] {
+    double t = 0;
+    CVodeGetCurrentTime(self.memory.get(), &t);
+    return t;
+  };
   self.event = std::move(event);
   self.scale = std::move(scale);
   self.sensitivities = std::move(sensitivities);
@@ -252,7 +212,7 @@ Arrival Cvode::advance(double t, std::span<double> y) {
   std::fill_n(state, self.size, std::numeric_limits<double>::quiet_NaN());
   std::fill(y.begin(), y.end(), std::numeric_limits<double>::quiet_NaN());
   self.message.clear();
-  self.step_vanished = false;
+  self.warned = false;
   self.thrown = nullptr;
 
   double reached = std::numeric_limits<double>::quiet_NaN();
@@ -264,7 +224,7 @@ Arrival Cvode::advance(double t, std::span<double> y) {
     return Arrival{Arrival::Kind::failed, std::isfinite(reached) ? reached : self.t, std::move(why)};
   };
   if (flag < 0) return failure(self.message.empty() ? fmt::format("CVODE returned {}", flag) : self.message);
-  if (self.step_vanished) return failure("the step of CVODE vanished: " + self.message);
+  if (self.warned) return failure("the step of CVODE vanished: " + self.message);
   if (!finite) return failure(fmt::format("CVODE returned {} with a state that is not finite", flag));
   const bool at_event = flag == CV_ROOT_RETURN;
   if (self.carried) {

@@ -6,18 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 
 #include "model/error.hpp"
+#include "predict/ode_callbacks.hpp"
 #include "predict/state_vector.hpp"
 #include "predict/sundials_handle.hpp"
 
 namespace grainlaw::predict {
 namespace {
-
-constexpr int kTryAgain = 1;  // recoverable: the solver reduces its step
-constexpr int kGiveUp = -1;
 
 void free_context(SUNContext context) { SUNContext_Free(&context); }
 void free_memory(void* memory) { ERKStepFree(&memory); }
@@ -49,49 +46,13 @@ ARKODE_ERKTableID table_of(int order) {
 
 }  // namespace
 
-struct RungeKutta::Impl {
-  std::size_t size = 0;
-  OdeRate rate;
-  OdeScale scale;
-  double relative = 0, absolute = 0;
+struct RungeKutta::Impl : OdeCallbacks {
   Owned<SUNContext, free_context> context{new_context()};
   Owned<N_Vector, N_VDestroy> y;
   Owned<void*, free_memory> memory;
-  std::string message;
-  std::exception_ptr thrown;  // by the user's functions; must not cross the C boundary
   long rhs_evaluations = 0, steps = 0;
 
-  static int evaluate_rate(realtype t, N_Vector y, N_Vector rate, void* user) {
-    auto& self = *static_cast<Impl*>(user);
-    double* out = N_VGetArrayPointer(rate);
-    std::fill_n(out, self.size, std::numeric_limits<double>::quiet_NaN());
-    try {
-      self.rate(t, N_VGetArrayPointer(y), out);
-    } catch (...) {
-      self.thrown = std::current_exception();
-      return kGiveUp;
-    }
-    return std::all_of(out, out + self.size, [](double v) { return std::isfinite(v); }) ? 0 : kTryAgain;
-  }
-
-  static int evaluate_weights(N_Vector y, N_Vector weight, void* user) {
-    auto& self = *static_cast<Impl*>(user);
-    double* out = N_VGetArrayPointer(weight);
-    double t = 0;
-    ERKStepGetCurrentTime(self.memory.get(), &t);
-    try {
-      self.scale(t, N_VGetArrayPointer(y), out);
-    } catch (...) {
-      self.thrown = std::current_exception();
-      return kGiveUp;
-    }
-    for (std::size_t i = 0; i < self.size; ++i) out[i] = 1 / (self.relative * out[i] + self.absolute);
-    return std::all_of(out, out + self.size, [](double v) { return v > 0 && std::isfinite(v); }) ? 0 : kGiveUp;
-  }
-
-  static void keep_message(int, const char*, const char*, char* text, void* user) {
-    static_cast<Impl*>(user)->message = text ? text : "";
-  }
+  OdeCallbacks* user() { return this; }
 
   void require(int flag, const char* call) const {
     if (flag != ARK_SUCCESS) throw Error(fmt::format("{} failed with flag {}: {}", call, flag, message));
@@ -106,14 +67,19 @@ RungeKutta::RungeKutta(std::size_t size, int order, double relative, double abso
   self.size = size;
   self.rate = std::move(rate);
   self.scale = std::move(scale);
+  self.time = [&self] {
+    double t = 0;
+    ERKStepGetCurrentTime(self.memory.get(), &t);
+    return t;
+  };
   self.relative = relative;
   self.absolute = absolute;
   self.y.reset(new_state_vector(size, self.context.get()));
   self.memory.reset(
       created(ERKStepCreate(Impl::evaluate_rate, 0, self.y.get(), self.context.get()), "the memory of ARKODE"));
   void* const memory = self.memory.get();
-  self.require(ERKStepSetErrHandlerFn(memory, Impl::keep_message, &self), "ERKStepSetErrHandlerFn");
-  self.require(ERKStepSetUserData(memory, &self), "ERKStepSetUserData");
+  self.require(ERKStepSetErrHandlerFn(memory, Impl::keep_message, self.user()), "ERKStepSetErrHandlerFn");
+  self.require(ERKStepSetUserData(memory, self.user()), "ERKStepSetUserData");
   self.require(ERKStepSetTableNum(memory, table), "ERKStepSetTableNum");
   self.require(ERKStepWFtolerances(memory, Impl::evaluate_weights), "ERKStepWFtolerances");
   self.require(ERKStepSetMaxNumSteps(memory, max_steps), "ERKStepSetMaxNumSteps");

@@ -115,6 +115,12 @@ Walk Walker::walk(const std::vector<StraightSegment>& segments, const LawState<d
   const long evaluations = self.rhs_evaluations(), steps = self.steps();
   LawState<double> state = start;
   for (std::size_t k = 0; k < segments.size(); ++k) {
+    if (self.rung == Rung::memory && segments[k].eps_dev_rate() > 0 && !segments[k].spin.isZero(0)) {
+      throw InvalidInput(fmt::format(
+          "segments[{}]: shears and spins, where the memory rung may reverse on the way, which walks do not "
+          "follow; use predict()",
+          k));
+    }
     if (!self.cvode && !self.runge_kutta) {
       walk.steps += self.euler(segments[k], state);
       walk.rhs_evaluations = walk.steps;

@@ -35,7 +35,8 @@ class Walker {
   Walker(const Walker&) = delete;
   Walker& operator=(const Walker&) = delete;
 
-  /// From `start`, jammed, to the end of `segments`. Throws NotConverged where the solver fails.
+  /// From `start`, jammed, to the end of `segments`. Throws NotConverged where the solver fails, InvalidInput for
+  /// Rung::memory on a segment that shears and spins: reversals on the way are events, which predict() follows.
   Walk walk(const std::vector<StraightSegment>& segments, const LawState<double>& start);
 
  private:

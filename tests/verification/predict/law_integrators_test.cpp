@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "model/error.hpp"
 #include "predict/batch.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
@@ -114,6 +115,19 @@ TEST(Integrators, RefuseAccuraciesThatAreNone) {
   const LawParameters<double> p = parameters();
   for (const double bad : {0.0, -1e-6, 1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(Walker(Integrator::erk_5, bad, p, Rung::evolution, Coupling::energy), std::exception) << bad;
+}
+
+TEST(Integrators, RefuseWhatMayReverseOnTheWay) {
+  const LawParameters<double> p = parameters();
+  auto path = path_from(0.70, {leg(Mode::D2, 0.02)});
+  path[0].spin << 0, 0, -1, 0, 0, 0, 1, 0, 0;
+  const LawState<double> start = state_from_law(p, 0.70);
+  for (const Integrator integrator : kIntegrators) {
+    Walker with_memory(integrator, 1e-3, p, Rung::memory, Coupling::energy);
+    EXPECT_THROW(with_memory.walk(path, start), InvalidInput) << to_string(integrator);
+    Walker without(integrator, 1e-3, p, Rung::evolution, Coupling::energy);
+    EXPECT_GT(without.walk(path, start).ends.back().P, 0) << "which has no reversals";
+  }
 }
 
 }  // namespace
