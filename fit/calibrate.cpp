@@ -95,6 +95,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   set_anisotropy(trajectories, calibration, options);
   fit_memory_rung(trajectories, calibration, options, control);
   calibration.covariance = calibration.errors.covariance();
+  calibration.scatter = packing_scatter(data, calibration.parameters, options.iso_nu_min);
   set_ranges(trajectories, calibration);
   calibration.converged = all_converged(calibration);
   return calibration;

@@ -16,6 +16,7 @@
 #include "fit/inherited_error.hpp"
 #include "fit/options.hpp"
 #include "fit/outcome.hpp"
+#include "fit/packing_scatter.hpp"
 #include "model/parameters.hpp"
 #include "model/run_control.hpp"
 #include "model/test_record.hpp"
@@ -32,6 +33,7 @@ struct Calibration {
   std::vector<ShearFit> shear;                      ///< in the order of the tests
   std::vector<std::string> unused_tests;            ///< calibration tests that no stage reads, e.g. ISO loading
   std::vector<std::string> warnings;                ///< about the data, e.g. rows that stand out (outliers.hpp)
+  PackingScatter scatter;                           ///< between runs of one path on different packings
   double nu_min = 0, nu_max = 0;                    ///< range of volume fraction of the rows that entered [-]
   double eps_dev_max = 0, eps_vol_max = 0;          ///< largest |strain| of the calibration tests that entered [-]
   bool converged = false;                           ///< all stages

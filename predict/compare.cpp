@@ -30,12 +30,25 @@ void check_pairs(const Prediction& prediction, const TestRecord& test) {
   }
 }
 
+/// Share of rows within a band.
+struct Coverage {
+  int rows = 0, within = 0;
+
+  void add(double difference, double half_width) {
+    if (!std::isfinite(half_width)) return;
+    ++rows;
+    if (std::abs(difference) <= half_width) ++within;
+  }
+  double share() const { return rows > 0 ? static_cast<double>(within) / rows : kNaN; }
+};
+
 template <class Predicted, class Observed>
 QuantityComparison compare_quantity(const std::string& name, const Prediction& prediction, const TestRecord& test,
-                                    double from, Predicted predicted, Observed observed) {
+                                    double from, Predicted predicted, double RowBand::*band, Observed observed) {
   QuantityComparison result;
   result.quantity = name;
   double sum = 0, sum_of_squares = 0, largest_observed = 0;
+  Coverage mean, single;
   for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
     const PredictedRow& row = prediction.rows[i];
     const double p = predicted(row), o = observed(test.rows[i]);
@@ -44,6 +57,8 @@ QuantityComparison compare_quantity(const std::string& name, const Prediction& p
     ++result.rows;
     sum += difference;
     sum_of_squares += difference * difference;
+    mean.add(difference, row.mean.*band);
+    single.add(difference, row.single.*band);
     largest_observed = std::max(largest_observed, std::abs(o));
     if (result.rows == 1 || std::abs(difference) > std::abs(result.largest)) {
       result.largest = difference;
@@ -56,6 +71,8 @@ QuantityComparison compare_quantity(const std::string& name, const Prediction& p
     result.largest_at_eps_dev = result.largest_at_nu = kNaN;
     return result;
   }
+  result.coverage_mean = mean.share();
+  result.coverage_single = single.share();
   result.bias = sum / result.rows;
   result.rms = std::sqrt(sum_of_squares / result.rows);
   result.normalised_rms = largest_observed > 0 ? result.rms / largest_observed : kNaN;
@@ -73,13 +90,13 @@ Comparison compare(const Prediction& prediction, const TestRecord& test) {
   comparison.test = test.name;
   comparison.quantities = {compare_quantity(
                                "P_star", prediction, test, from, [](const PredictedRow& r) { return r.state.P; },
-                               [](const Observation& o) { return o.P_star; }),
+                               &RowBand::P, [](const Observation& o) { return o.P_star; }),
                            compare_quantity(
                                "s_par", prediction, test, from, [](const PredictedRow& r) { return r.s_par; },
-                               [](const Observation& o) { return o.s_par; }),
+                               &RowBand::s_par, [](const Observation& o) { return o.s_par; }),
                            compare_quantity(
                                "F_par", prediction, test, from, [](const PredictedRow& r) { return r.F_par; },
-                               [](const Observation& o) { return o.F_par; })};
+                               &RowBand::F_par, [](const Observation& o) { return o.F_par; })};
   return comparison;
 }
 

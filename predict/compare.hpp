@@ -2,6 +2,7 @@
 // A prediction against the DEM test of the same path, row by row at the observed strains.
 //   bias = mean(prediction - DEM),  normalised RMS = RMS(prediction - DEM)/max|DEM|, both over rows with
 //   shear_path >= 0.01 (all rows when the path has no shear). NaN where no row counts.
+// Coverage of a band: the share of these rows that have one and in which DEM lies within it. NaN without a band.
 
 #include "predict/predict.hpp"
 
@@ -15,6 +16,8 @@ struct QuantityComparison {
   double normalised_rms = 0;                         ///< rms/max|DEM| [-]
   double largest = 0;                                ///< prediction - DEM where its magnitude is largest [-]
   double largest_at_eps_dev = 0, largest_at_nu = 0;  ///< where that is [-]
+  double coverage_mean = std::numeric_limits<double>::quiet_NaN();    ///< of the mean curve's band [-]
+  double coverage_single = std::numeric_limits<double>::quiet_NaN();  ///< of the single run's band [-]
 };
 
 struct Comparison {

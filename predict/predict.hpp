@@ -8,6 +8,7 @@
 // Dimensionless (*) throughout; strain tension positive, stress and fabric compression positive. The deviators are the
 // 5-vectors of model/tensor.hpp.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,15 @@ std::vector<OutputPoint> uniform_points(const std::vector<StraightSegment>& segm
 /// segment or strain, or that is no number. Rows may repeat.
 std::vector<OutputPoint> points_of(const TestRecord& test);
 
+/// Half widths of a 95 % band about what a row reports; NaN: none. By bands.hpp.
+struct RowBand {
+  double P = std::numeric_limits<double>::quiet_NaN();      ///< about P* [-]
+  double s_dev = std::numeric_limits<double>::quiet_NaN();  ///< likewise [-]
+  double s_par = std::numeric_limits<double>::quiet_NaN();
+  double F_dev = std::numeric_limits<double>::quiet_NaN();
+  double F_par = std::numeric_limits<double>::quiet_NaN();
+};
+
 struct PredictedRow {
   int segment = 0;                                          ///< index of the path's segment
   Strain strain;                                            ///< tension positive [-]
@@ -50,6 +60,7 @@ struct PredictedRow {
   double s_dev = 0;                                         ///< |sigma'|/P, NaN while unjammed [-]
   double s_par = 0;             ///< <sigma',N>/P, N the path's first shear direction; NaN on a path without shear [-]
   double F_dev = 0, F_par = 0;  ///< |F'| and <F',N>, likewise [-]
+  RowBand mean, single;         ///< of the mean over packings, and of the run of one packing
 };
 
 /// What happens on the way besides corners; see path_integration.hpp.

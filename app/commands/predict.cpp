@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <utility>
 
 #include "app/adopted_dataset.hpp"
 #include "app/digest.hpp"
@@ -11,6 +13,7 @@
 #include "app/files/path_file.hpp"
 #include "app/new_packings.hpp"
 #include "app/output_folder.hpp"
+#include "app/uncertainty.hpp"
 #include "model/error.hpp"
 #include "predict/mixed_control.hpp"
 #include "predict/rung_advice.hpp"
@@ -43,17 +46,25 @@ struct Law {
   std::vector<Rung> rungs;
   const Path& path;
   std::vector<StraightSegment> segments;  ///< none where the law decides where the path leads
+  predict::Uncertainty uncertainty;
   predict::ValidRange range;
   RunControl control;
 
-  predict::Prediction along(Rung model, const LawState<double>& start,
+  /// With bands, which take the start's error in where the law makes it.
+  predict::Prediction along(Rung model, Initial initial, const LawState<double>& start,
                             const std::vector<predict::OutputPoint>& points) const {
-    return predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points,
-                            predict::Tolerances{}, range, control);
+    predict::Prediction prediction =
+        predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points,
+                         predict::Tolerances{}, range, control, {uncertainty.parameters, initial == Initial::law});
+    predict::add_bands(calibration.parameters, uncertainty, prediction);
+    return prediction;
   }
 
-  predict::Prediction at_equal_steps(Rung model, const LawState<double>& start) const {
-    if (!law_decides(path)) return along(model, start, predict::uniform_points(segments, kPointsPerSegment));
+  /// From the law's own start.
+  predict::Prediction at_equal_steps(Rung model) const {
+    const LawState<double> start = predict::state_from_law(calibration.parameters, path.nu);
+    if (!law_decides(path))
+      return along(model, Initial::law, start, predict::uniform_points(segments, kPointsPerSegment));
     return predict::predict_by_law(model, calibration.parameters, calibration.coupling, path, start, kPointsPerSegment,
                                    predict::Tolerances{}, range, control);
   }
@@ -61,10 +72,9 @@ struct Law {
 
 /// Curves at equal steps, from the law's own start.
 void add_free_curves(const Law& law, PredictionFolder& content) {
-  const auto start = predict::state_from_law(law.calibration.parameters, content.path.nu);
   for (const Rung model : law.rungs) {
-    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)),
-                              law.at_equal_steps(model, start)});
+    content.curves.push_back(
+        {model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), law.at_equal_steps(model)});
   }
 }
 
@@ -80,7 +90,7 @@ void add_compared_curves(const Law& law, const PredictOptions& options, Predicti
                                : predict::state_from_row(test.record.rows.front());
         PredictedCurve curve{model, initial, seed,
                              fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
-                             law.along(model, start, points)};
+                             law.along(model, initial, start, points)};
         content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
         content.curves.push_back(std::move(curve));
       }
@@ -112,13 +122,16 @@ Spec spec_beside(const PredictOptions& options) {
 }
 
 OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) {
-  OrderedJson summary{{"folder", output.string()}};
+  OrderedJson summary{{"folder", output.string()}, {"rung", rung_to_json(content)}, {"bands", content.bands}};
   OrderedJson& comparisons = summary["comparisons"] = OrderedJson::array();
   for (const CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
     OrderedJson object{{"model", to_string(entry.model)}, {"initial", to_string(entry.initial)}};
     for (const auto& q : entry.comparison.quantities) {
-      object[q.quantity] = {{"bias", number_or_null(q.bias)}, {"normalised_rms", number_or_null(q.normalised_rms)}};
+      object[q.quantity] = {{"bias", number_or_null(q.bias)},
+                            {"normalised_rms", number_or_null(q.normalised_rms)},
+                            {"coverage_mean", number_or_null(q.coverage_mean)},
+                            {"coverage_single", number_or_null(q.coverage_single)}};
     }
     comparisons.push_back(object);
   }
@@ -126,40 +139,75 @@ OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) 
 }
 
 /// Which rung the path needs, and what each richer one changes on the curves from the law's start.
-std::string advice_on(const Law& law, const PredictionFolder& content) {
+void add_advice(const Law& law, PredictionFolder& content) {
   // where the law decides where the path leads, two rungs have no rows at the same strain
-  if (law_decides(law.path)) return "needs     evolution: the law decides the strain\n";
-  const predict::RungAdvice advice = predict::rung_needed(law.calibration.parameters, law.segments);
-  std::string text = fmt::format("needs     {}: {}\n", to_string(advice.rung), advice.why);
+  if (law_decides(law.path)) {
+    content.needed = {Rung::evolution, "the law decides the strain"};
+    return;
+  }
+  content.needed = predict::rung_needed(law.calibration.parameters, law.segments);
   const PredictedCurve* cheaper = nullptr;
   for (const PredictedCurve& curve : content.curves) {
     if (curve.seed) continue;
-    if (cheaper != nullptr) {
-      const predict::RungDifference d = predict::difference(cheaper->prediction, curve.prediction);
-      text += fmt::format(
-          "{} instead of {} changes P* by up to {:.1f} %, the stress ratio by {:.4f}, the fabric by {:.4f}\n",
-          to_string(curve.model), to_string(cheaper->model), 100 * d.P, d.s, d.F);
-    }
+    if (cheaper != nullptr)
+      content.changes.push_back(
+          {cheaper->model, curve.model, predict::difference(cheaper->prediction, curve.prediction)});
     cheaper = &curve;
+  }
+}
+
+std::string advice_text(const PredictionFolder& content) {
+  std::string text = fmt::format("needs     {}: {}\n", to_string(content.needed.rung), content.needed.why);
+  for (const RungChange& change : content.changes) {
+    const predict::RungDifference& d = change.difference;
+    text +=
+        fmt::format("{} instead of {} changes P* by up to {:.1f} %, the stress ratio by {:.4f}, the fabric by {:.4f}\n",
+                    to_string(change.richer), to_string(change.cheaper), 100 * d.P, d.s, d.F);
   }
   return text;
 }
 
-std::string text_of(const Law& law, const PredictionFolder& content, const fs::path& output) {
-  std::string text = advice_on(law, content);
+/// The bands at a row: half widths of the mean curve's and of a single run's.
+std::string bands_text(const predict::PredictedRow& row) {
+  if (!std::isfinite(row.mean.P)) return "";
+  std::string text = fmt::format("{:<18}  ±", "");
+  for (const auto& [name, band] : {std::pair{"P*", &predict::RowBand::P},
+                                   {"s_par", &predict::RowBand::s_par},
+                                   {"F_par", &predict::RowBand::F_par}}) {
+    if (!std::isfinite(row.mean.*band)) continue;
+    text += fmt::format("  {} {:.2g}", name, row.mean.*band);
+    if (std::isfinite(row.single.*band)) text += fmt::format(" (single run {:.2g})", row.single.*band);
+  }
+  return text + "\n";
+}
+
+/// Shares of the DEM rows within the bands.
+std::string coverage_text(const predict::Comparison& comparison) {
+  std::string text;
+  for (const auto& q : comparison.quantities) {
+    if (!std::isfinite(q.coverage_mean)) continue;
+    text += fmt::format("  {} {:.0f} %", q.quantity, 100 * q.coverage_mean);
+    if (std::isfinite(q.coverage_single)) text += fmt::format(" (single run {:.0f} %)", 100 * q.coverage_single);
+  }
+  return text.empty() ? text : fmt::format("{:<18}  within the bands{}\n", "", text);
+}
+
+std::string text_of(const PredictionFolder& content, const fs::path& output) {
+  std::string text = advice_text(content) + "bands     " + content.bands + "\n";
   for (const PredictedCurve& curve : content.curves) {
     if (curve.seed || curve.prediction.rows.empty()) continue;
     const predict::PredictedRow& end = curve.prediction.rows.back();
     text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n", to_string(curve.model),
                         to_string(curve.initial), end.nu, end.state.P, end.s_par, end.F_par,
                         curve.prediction.unjammed ? "  (unjammed)" : "");
+    text += bands_text(end);
   }
   for (const CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
     text += fmt::format("{:<9} {:<8}", to_string(entry.model), to_string(entry.initial));
     for (const auto& q : entry.comparison.quantities)
       text += fmt::format("  {} bias {:+.4f} rms {:.1f} %", q.quantity, q.bias, 100 * q.normalised_rms);
-    text += "\n";
+    text += "\n" + coverage_text(entry.comparison);
   }
   return text + (output / "prediction.json").string() + "\n";
 }
@@ -185,6 +233,7 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
                 rungs,
                 path.path,
                 law_decides(path.path) ? std::vector<StraightSegment>{} : resolve(path.path),
+                uncertainty_of(calibration),
                 {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max},
                 {{}, session.stop}};
   predict::state_from_law(calibration.parameters,
@@ -214,6 +263,8 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   if (finished) content.dem = adopt(*finished, from, make_subfolder(options.output, "dem"));
   if (options.initial != Initial::measured) add_free_curves(law, content);
   if (content.dem) add_compared_curves(law, options, content);
+  add_advice(law, content);
+  content.bands = law_decides(path.path) ? "none: the law decides the strain" : text_of(law.uncertainty);
   content.provenance = Json(provenance(session.command, session.threads, session.stopwatch));
   write_prediction(options.output, content);
 
@@ -224,7 +275,7 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
       if (warned.insert(warning).second) session.progress.log("warning: " + warning);
     }
   }
-  print_result(session.json ? json_text(summary_of(content, options.output)) : text_of(law, content, options.output));
+  print_result(session.json ? json_text(summary_of(content, options.output)) : text_of(content, options.output));
   return ExitCode::ok;
 }
 

@@ -30,6 +30,19 @@ OrderedJson covariance_to_json(const fit::Calibration& c) {
   return {{"names", names}, {"matrix", matrix}};
 }
 
+OrderedJson scatter_to_json(const fit::PackingScatter& scatter) {
+  return {{"packings", scatter.packings},
+          {"degrees_of_freedom", scatter.degrees_of_freedom},
+          {"compression", number_or_null(scatter.compression)},
+          {"s_par", number_or_null(scatter.s_par)},
+          {"F_par", number_or_null(scatter.F_par)}};
+}
+
+fit::PackingScatter scatter_from_json(const Json& object) {
+  return {object["packings"], object["degrees_of_freedom"], number_or_nan(object["compression"]),
+          number_or_nan(object["s_par"]), number_or_nan(object["F_par"])};
+}
+
 void read_covariance(const Json& object, Eigen::MatrixXd& covariance) {
   const Json &names = object["names"], &matrix = object["matrix"];
   std::vector<Eigen::Index> index;
@@ -75,6 +88,7 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
     table[info.name] = entry;
   }
   document["covariance"] = covariance_to_json(c);
+  document["scatter"] = scatter_to_json(c.scatter);
   document["ranges"] = {
       {"nu", {c.nu_min, c.nu_max}}, {"eps_dev", {0.0, c.eps_dev_max}}, {"eps_vol", {0.0, c.eps_vol_max}}};
   if (!parameters.dataset_digest.empty()) document["dataset_digest"] = parameters.dataset_digest;
@@ -117,6 +131,7 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", name, error.what()));
   }
+  if (document.contains("scatter")) c.scatter = scatter_from_json(document["scatter"]);
   const Json& ranges = document["ranges"];
   c.nu_min = ranges["nu"][0];
   c.nu_max = ranges["nu"][1];

@@ -93,9 +93,21 @@ OrderedJson comparison_to_json(const CurveComparison& entry) {
                           {"normalised_rms", number_or_null(q.normalised_rms)},
                           {"largest", number_or_null(q.largest)},
                           {"largest_at_eps_dev", number_or_null(q.largest_at_eps_dev)},
-                          {"largest_at_nu", number_or_null(q.largest_at_nu)}});
+                          {"largest_at_nu", number_or_null(q.largest_at_nu)},
+                          {"coverage_mean", number_or_null(q.coverage_mean)},
+                          {"coverage_single", number_or_null(q.coverage_single)}});
   }
   return object;
+}
+
+/// The other way round of rung_to_json().
+void read_rung(const Json& object, PredictionFolder& content) {
+  content.needed = {rung_of(object.at("needed").get<std::string>()), object.at("why")};
+  for (const Json& change : object.at("changes")) {
+    content.changes.push_back({rung_of(change.at("from").get<std::string>()),
+                               rung_of(change.at("to").get<std::string>()),
+                               {change.at("P_star"), change.at("stress_ratio"), change.at("fabric")}});
+  }
 }
 
 CurveComparison comparison_from_json(const Json& object) {
@@ -106,7 +118,8 @@ CurveComparison comparison_from_json(const Json& object) {
     entry.comparison.quantities.push_back({q.at("quantity"), q.at("rows"), number_or_nan(q.at("bias")),
                                            number_or_nan(q.at("rms")), number_or_nan(q.at("normalised_rms")),
                                            number_or_nan(q.at("largest")), number_or_nan(q.at("largest_at_eps_dev")),
-                                           number_or_nan(q.at("largest_at_nu"))});
+                                           number_or_nan(q.at("largest_at_nu")), number_or_nan(q.at("coverage_mean")),
+                                           number_or_nan(q.at("coverage_single"))});
   }
   return entry;
 }
@@ -125,7 +138,11 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
         if (entry.model != model || entry.initial != initial || !entry.seed) continue;
         seeds += 1;
         auto& sums = mean.comparison.quantities;
-        if (sums.empty()) sums.resize(entry.comparison.quantities.size());
+        if (sums.empty()) {
+          QuantityComparison none;
+          none.coverage_mean = none.coverage_single = 0;
+          sums.resize(entry.comparison.quantities.size(), none);
+        }
         for (std::size_t i = 0; i < sums.size(); ++i) {
           const QuantityComparison& q = entry.comparison.quantities.at(i);
           sums[i].quantity = q.quantity;
@@ -133,6 +150,8 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
           sums[i].bias += q.bias;
           sums[i].rms += q.rms;
           sums[i].normalised_rms += q.normalised_rms;
+          sums[i].coverage_mean += q.coverage_mean;
+          sums[i].coverage_single += q.coverage_single;
           if (std::abs(q.largest) >= std::abs(sums[i].largest)) {
             sums[i].largest = q.largest;
             sums[i].largest_at_eps_dev = q.largest_at_eps_dev;
@@ -145,11 +164,27 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
         q.bias /= seeds;
         q.rms /= seeds;
         q.normalised_rms /= seeds;
+        q.coverage_mean /= seeds;
+        q.coverage_single /= seeds;
       }
       means.push_back(mean);
     }
   }
   return means;
+}
+
+OrderedJson rung_to_json(const PredictionFolder& content) {
+  OrderedJson object{{"needed", to_string(content.needed.rung)}, {"why", content.needed.why}};
+  OrderedJson& changes = object["changes"] = OrderedJson::array();
+  for (const RungChange& change : content.changes) {
+    const predict::RungDifference& d = change.difference;
+    changes.push_back({{"from", to_string(change.cheaper)},
+                       {"to", to_string(change.richer)},
+                       {"P_star", d.P},
+                       {"stress_ratio", d.s},
+                       {"fabric", d.F}});
+  }
+  return object;
 }
 
 void write_prediction(const fs::path& folder, const PredictionFolder& content) {
@@ -166,7 +201,8 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
                 {"format_version", 1},
                 {"normalisation",
                  "normalised_rms = RMS(prediction - DEM)/max|DEM|, bias = mean(prediction - DEM), rows with "
-                 "shear_path >= 0.01 (all rows without shear); test \"mean\": mean over seeds"},
+                 "shear_path >= 0.01 (all rows without shear); coverage = share of these rows within the band; test "
+                 "\"mean\": mean over seeds"},
                 {"dataset_digest", content.dem->digest},
                 {"comparisons", entries}});
   }
@@ -177,6 +213,8 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
   document["path"] = path_to_json(content.path);
   document["parameters"] = OrderedJson(content.parameters);
   document["dem"] = content.dem ? OrderedJson("dem") : OrderedJson(nullptr);
+  document["rung"] = rung_to_json(content);
+  document["bands"] = content.bands;
   document["curves"] = curves;
   document["provenance"] = OrderedJson(content.provenance);
   write_json(folder / "prediction.json", document);
@@ -191,6 +229,8 @@ PredictionFolder read_prediction(const fs::path& folder) {
     content.path = path_from_json(document.at("path"), file.string(), "path.", true);
     content.parameters = document.at("parameters");
     content.provenance = document.at("provenance");
+    read_rung(document.at("rung"), content);
+    content.bands = document.at("bands");
     for (const Json& curve : document.at("curves")) content.curves.push_back(curve_from_json(curve, folder));
     if (!document.at("dem").is_null()) {
       content.dem = read_dataset(folder / "dem");

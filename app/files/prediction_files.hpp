@@ -11,6 +11,7 @@
 #include "app/files/dataset.hpp"
 #include "predict/compare.hpp"
 #include "predict/predict.hpp"
+#include "predict/rung_advice.hpp"
 
 namespace grainlaw::app {
 
@@ -34,9 +35,18 @@ struct CurveComparison {
   predict::Comparison comparison;     ///< test "mean" when none
 };
 
+/// What a richer rung changes on the curves from the law's start.
+struct RungChange {
+  Rung cheaper = Rung::reduced, richer = Rung::evolution;
+  predict::RungDifference difference;
+};
+
 struct PredictionFolder {
   std::string name;  ///< last part of the folder's path
   Path path;
+  predict::RungAdvice needed;       ///< rung that the path needs
+  std::vector<RungChange> changes;  ///< none where the law decides the strain: no two rows are at the same strain
+  std::string bands;                ///< one line: which there are, or why there are none
   std::vector<PredictedCurve> curves;
   std::optional<Dataset> dem;  ///< the runs in dem/
   std::vector<CurveComparison> comparisons;
@@ -46,6 +56,9 @@ struct PredictionFolder {
 
 /// Writes curves, prediction.json and, when there are DEM runs, comparison.json; dem/ must already be written.
 void write_prediction(const std::filesystem::path& folder, const PredictionFolder& content);
+
+/// `rung` of prediction.json and of `predict --json`.
+OrderedJson rung_to_json(const PredictionFolder& content);
 
 /// Throws InvalidInput naming file and key.
 PredictionFolder read_prediction(const std::filesystem::path& folder);

@@ -70,6 +70,16 @@ Columns<Observation> make_observation_columns() {
   return c;
 }
 
+/// Half widths of the two bands about one quantity.
+template <double predict::RowBand::*member>
+void add_bands(Columns<predict::PredictedRow>& columns, const std::string& name, const std::string& symbol) {
+  using R = predict::PredictedRow;
+  columns.push_back({name + "_mean95", "", "", "half width of the 95 % band of the mean curve about " + symbol,
+                     [](const R& r) { return r.mean.*member; }, [](R& r, double v) { r.mean.*member = v; }});
+  columns.push_back({name + "_single95", "", "", "half width of the 95 % band of a single run about " + symbol,
+                     [](const R& r) { return r.single.*member; }, [](R& r, double v) { r.single.*member = v; }});
+}
+
 Columns<predict::PredictedRow> make_prediction_columns() {
   using R = predict::PredictedRow;
   Columns<R> c;
@@ -89,6 +99,11 @@ Columns<predict::PredictedRow> make_prediction_columns() {
   add_deviator<&LawState<double>::sigma>(c, "sigma_dev", "sigma'*",
                                          "deviatoric stress times 2<r>/k, compression positive");
   add_deviator<&LawState<double>::F>(c, "fabric_dev", "F'", "deviatoric fabric");
+  add_bands<&predict::RowBand::P>(c, "P_star", "P*");
+  add_bands<&predict::RowBand::s_dev>(c, "s_dev", "s_dev");
+  add_bands<&predict::RowBand::s_par>(c, "s_par", "s_par");
+  add_bands<&predict::RowBand::F_dev>(c, "F_dev", "F_dev");
+  add_bands<&predict::RowBand::F_par>(c, "F_par", "F_par");
   return c;
 }
 

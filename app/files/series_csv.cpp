@@ -177,7 +177,7 @@ std::vector<predict::PredictedRow> read_prediction_series(const std::filesystem:
     row.state.sigma.setZero();
     row.state.F.setZero();
     for (std::size_t i = 0; i < values.size(); ++i) {
-      if (std::isnan(values[i]) && columns[i]->name != "s_dev" && columns[i]->name != "s_par" &&
+      if (std::isnan(values[i]) && columns[i]->required && columns[i]->name != "s_dev" && columns[i]->name != "s_par" &&
           columns[i]->name != "F_par") {
         reader.refuse(columns[i]->title(), "is empty; this column needs a number in every row");
       }

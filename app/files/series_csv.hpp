@@ -19,7 +19,7 @@ void write_series(const std::filesystem::path& file, const std::vector<Observati
 /// column or unit, values that contradict each other (nu and strain, P_star and stress, ...), times that do not grow.
 std::vector<Observation> read_series(const std::filesystem::path& file, const Path& path, const PackingInfo& packing);
 
-/// Likewise for predictions; every column is required.
+/// Likewise for predictions; the columns of the bands may be missing or empty.
 void write_prediction_series(const std::filesystem::path& file, const std::vector<predict::PredictedRow>& rows);
 std::vector<predict::PredictedRow> read_prediction_series(const std::filesystem::path& file);
 

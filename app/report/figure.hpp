@@ -18,9 +18,10 @@ enum class Colour { ink, blue, vermillion, green, purple, orange, sky };
 inline constexpr int kColourCount = 7;
 
 struct Series {
-  Text label;                   ///< entry in the legend, once per figure and label; empty: none
-  std::vector<double> x, y;     ///< same length; a point that is not finite is not drawn but counted
-  std::vector<double> y_error;  ///< one standard error each, may be empty or NaN
+  Text label;                              ///< entry in the legend, once per figure and label; empty: none
+  std::vector<double> x, y;                ///< same length; a point that is not finite is not drawn but counted
+  std::vector<double> y_error;             ///< one standard error each, may be empty or NaN
+  std::vector<std::vector<double>> bands;  ///< half widths of shaded bands about y, each as long as y; NaN: a gap
   Colour colour = Colour::ink;
   Marker marker = Marker::none;
   bool open_marker = false;  ///< outline only

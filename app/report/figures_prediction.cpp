@@ -17,15 +17,16 @@ struct Predicted {
   const char* difference;
   Quantity measured;
   double (*of)(const PredictedRow&);
+  double predict::RowBand::*band;
 };
 
 constexpr std::array<Predicted, 3> kQuantities{
     {{"pressure {P}* [–]", "law − DEM: {P}* [–]", &Observation::P_star,
-      [](const PredictedRow& row) { return row.state.P; }},
+      [](const PredictedRow& row) { return row.state.P; }, &predict::RowBand::P},
      {"stress ratio {s}_{∥} [–]", "law − DEM: {s}_{∥} [–]", &Observation::s_par,
-      [](const PredictedRow& row) { return row.s_par; }},
+      [](const PredictedRow& row) { return row.s_par; }, &predict::RowBand::s_par},
      {"fabric {F}_{∥} [–]", "law − DEM: {F}_{∥} [–]", &Observation::F_par,
-      [](const PredictedRow& row) { return row.F_par; }}}};
+      [](const PredictedRow& row) { return row.F_par; }, &predict::RowBand::F_par}}};
 
 template <class Row>
 bool strain_grows(const std::vector<Row>& rows) {
@@ -81,6 +82,25 @@ Series predicted_line(const PredictedCurve& drawn, const Predicted& quantity, co
   return series;
 }
 
+/// The curve whose bands are drawn: of the rung that the path needs, else of the richest, from the law's own start.
+const PredictedCurve* banded_curve(const PredictionFolder& prediction,
+                                   const std::vector<const PredictedCurve*>& shown) {
+  const PredictedCurve* richest = nullptr;
+  for (const PredictedCurve* drawn : shown) {
+    if (drawn->initial != Initial::law) continue;
+    if (richest == nullptr || richest->model != prediction.needed.rung) richest = drawn;
+  }
+  return richest;
+}
+
+void add_bands(const PredictedCurve& drawn, const Predicted& quantity, Series& series) {
+  series.bands.resize(2);
+  for (const PredictedRow& row : drawn.prediction.rows) {
+    series.bands[0].push_back(row.mean.*quantity.band);
+    series.bands[1].push_back(row.single.*quantity.band);
+  }
+}
+
 /// Row by row: the curve was computed at the rows of `test`.
 Series difference_line(const PredictedCurve& drawn, const TestRecord& test, const Predicted& quantity,
                        const Abscissa& abscissa) {
@@ -115,8 +135,11 @@ Panel value_panel(const PredictionFolder& prediction, const std::vector<TestReco
                                        quantity.measured, 60, plain("DEM seed " + std::to_string(test.packing.seed)),
                                        seed % 2 == 0 ? Colour::blue : Colour::sky, marker_of(seed)));
   }
-  for (const PredictedCurve* drawn : shown_curves(prediction)) {
+  const std::vector<const PredictedCurve*> shown = shown_curves(prediction);
+  const PredictedCurve* const banded = banded_curve(prediction, shown);
+  for (const PredictedCurve* drawn : shown) {
     panel.series.push_back(predicted_line(*drawn, quantity, abscissa));
+    if (drawn == banded) add_bands(*drawn, quantity, panel.series.back());
   }
   return panel;
 }
@@ -156,11 +179,15 @@ Figure prediction_figure(const PredictionFolder& prediction, std::size_t index) 
       "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs on "
       "packings "
       "that the calibration never saw, lines the predictions of the law. Below them the differences.";
+  const Text note =
+      plain(fmt::format(" The path needs {}: {}. Bands, about that rung's curve from the law's start: {}.",
+                        to_string(prediction.needed.rung), prediction.needed.why, prediction.bands));
   figure.caption =
       dem.empty() ? plain("No DEM run of this path; grainlaw predict with --dem makes them.")
                   : plain("DEM on packings that the calibration never saw (" + seed_count(dem) +
                           "). Below: the law, from its own start where there is one, minus DEM, row by row, a thin "
                           "line for each run.");
+  figure.caption = figure.caption + note;
   figure.sources = {in_folder(prediction, "prediction.json"), in_folder(prediction, "*.csv")};
   if (!dem.empty()) figure.sources.push_back(in_folder(prediction, "dem/"));
   figure.columns = 3;

@@ -50,6 +50,11 @@ Axis make_axis(const std::vector<const Panel*>& panels, bool horizontal, int wan
           extent.add(values[i] - series.y_error[i], style);
           extent.add(values[i] + series.y_error[i], style);
         }
+        for (const std::vector<double>& band : series.bands) {
+          if (horizontal) break;
+          extent.add(values[i] - band[i], style);
+          extent.add(values[i] + band[i], style);
+        }
       }
     }
   }
@@ -132,6 +137,21 @@ struct PanelRenderer {
     return fx >= -slack && fx <= 1 + slack && fy >= -slack && fy <= 1 + slack;
   }
 
+  std::string shade(const Series& series, const std::vector<double>& half_width) const {
+    std::vector<std::vector<PixelPoint>> runs(1);
+    for (std::size_t i = 0; i < series.x.size(); ++i) {
+      const double vx = series.x[i], low = series.y[i] - half_width[i], high = series.y[i] + half_width[i];
+      if (!x.defined_at(vx) || !y.defined_at(low) || !y.defined_at(high)) {
+        if (!runs.back().empty()) runs.emplace_back();
+        continue;
+      }
+      runs.back().push_back({px(vx), py(series.y[i]), py(low), py(high)});
+    }
+    const std::string path = band_path(runs);
+    if (path.empty()) return path;
+    return fmt::format("<path class=\"band\" d=\"{}\" fill=\"currentColor\" fill-opacity=\"0.14\"/>", path);
+  }
+
   std::string ink(const Series& series) {
     std::vector<PixelPoint> symbols;
     std::vector<std::vector<PixelPoint>> runs(1);
@@ -157,6 +177,7 @@ struct PanelRenderer {
       }
     }
     std::string out;
+    for (const std::vector<double>& band : series.bands) out += shade(series, band);
     const std::string bars = error_bar_path(symbols);
     if (!bars.empty()) out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"currentColor\"/>", bars);
     if (series.line != Line::none) {

@@ -74,6 +74,18 @@ std::string line_attributes(Line line, double width) {
   return attributes;
 }
 
+std::string band_path(const std::vector<std::vector<PixelPoint>>& runs) {
+  std::string path;
+  for (const auto& run : runs) {
+    if (run.size() < 2) continue;
+    for (std::size_t i = 0; i < run.size(); ++i)
+      path += fmt::format("{}{} {}", i == 0 ? "M" : "L", pixels(run[i].x), pixels(run[i].y_low));
+    for (std::size_t i = run.size(); i-- > 0;) path += fmt::format("L{} {}", pixels(run[i].x), pixels(run[i].y_high));
+    path += "z";
+  }
+  return path;
+}
+
 std::string error_bar_path(const std::vector<PixelPoint>& points) {
   std::string path;
   for (const PixelPoint& p : points) {

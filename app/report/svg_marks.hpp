@@ -10,7 +10,7 @@ namespace grainlaw::app::report {
 
 struct PixelPoint {
   double x = 0, y = 0;
-  double y_low = 0, y_high = 0;  ///< ends of the error bar; equal when there is none
+  double y_low = 0, y_high = 0;  ///< ends of the error bar, or edges of the band; equal when there is none
 };
 
 /// A length with two decimals at most, e.g. "12.5".
@@ -29,6 +29,9 @@ std::string marker_attributes(Marker marker, bool open);
 std::string line_path(const std::vector<std::vector<PixelPoint>>& runs);
 
 std::string line_attributes(Line line, double width);
+
+/// Path data of the areas between y_low and y_high along runs of points.
+std::string band_path(const std::vector<std::vector<PixelPoint>>& runs);
 
 /// Path data of the error bars, with caps; empty when there are none.
 std::string error_bar_path(const std::vector<PixelPoint>& points);

@@ -38,19 +38,27 @@ Table prediction_table(const PredictionFolder& prediction) {
   Table table;
   table.caption = prediction.name + ": prediction minus DEM, run by run";
   table.source = "predictions/" + prediction.name + "/comparison.json";
-  table.columns = {words(plain("model")),       words(plain("start")),
-                   quantity(plain("DEM seed")), words(plain("quantity")),
-                   quantity(plain("rows")),     quantity(plain("bias")),
-                   quantity(plain("RMS")),      quantity(plain("RMS/max|DEM| [%]")),
-                   quantity(plain("largest")),  quantity(notation("at {ε}_{dev}")),
-                   quantity(notation("at {ν}"))};
+  table.columns = {words(plain("model")),
+                   words(plain("start")),
+                   quantity(plain("DEM seed")),
+                   words(plain("quantity")),
+                   quantity(plain("rows")),
+                   quantity(plain("bias")),
+                   quantity(plain("RMS")),
+                   quantity(plain("RMS/max|DEM| [%]")),
+                   quantity(plain("largest")),
+                   quantity(notation("at {ε}_{dev}")),
+                   quantity(notation("at {ν}")),
+                   quantity(plain("in band of the mean [%]")),
+                   quantity(plain("of a single run [%]"))};
   for (const CurveComparison& entry : prediction.comparisons) {
     for (const predict::QuantityComparison& q : entry.comparison.quantities) {
       table.rows.push_back({plain(to_string(entry.model)), plain(to_string(entry.initial)),
                             plain(entry.seed ? std::to_string(*entry.seed) : "mean"), plain(q.quantity),
                             plain(std::to_string(q.rows)), number(q.bias, 3), number(q.rms, 3),
                             plain(fixed(100 * q.normalised_rms, 2)), number(q.largest, 3),
-                            number(q.largest_at_eps_dev, 3), plain(fixed(q.largest_at_nu, 3))});
+                            number(q.largest_at_eps_dev, 3), plain(fixed(q.largest_at_nu, 3)),
+                            plain(fixed(100 * q.coverage_mean, 0)), plain(fixed(100 * q.coverage_single, 0))});
     }
   }
   return table;

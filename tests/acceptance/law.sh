@@ -4,6 +4,7 @@
 # --quick: hard cases of the integration and the study of integrators. Otherwise also the moduli of small-strain probes and
 # what examples/law/run.sh makes (both reused from build/acceptance/ when finished). From the measured start, mean over seeds:
 #   PATH.RUNG.QUANTITY.bias, .rms      bias, and RMS over the largest |DEM|, per rung
+#   PATH.RUNG.QUANTITY.coverage.mean, .single   share of the DEM rows within the band of the mean curve, of a single run
 #   PATH.memory.K.s, .F                strain to the sign change in segment K, law over DEM minus 1
 #   PATH.memory.K.dip                  least P* of segment K over that at its corner, law minus DEM
 #   dilatancy.RUNG.NU                  rise of P* in D2 at constant volume, law minus DEM
@@ -27,15 +28,19 @@ goal() { # path rung quantity kind
 magnitude() { awk -v x="$1" 'BEGIN { print x < 0 ? -x : x }'; }
 
 held_out() { # folder of a prediction
-  local path rung quantity bias rms bound
+  local path rung quantity bias rms mean single bound
   path=$(basename "$1")
-  while read -r rung quantity bias rms; do
+  while read -r rung quantity bias rms mean single; do
     bound=$(goal "$path" "$rung" "$quantity" bias)
     if [[ $bound == stated ]]; then figure "$path.$rung.$quantity.bias" "$bias" stated
     else figure "$path.$rung.$quantity.|bias|" "$(magnitude "$bias")" "$bound"; fi
     figure "$path.$rung.$quantity.rms" "$rms" "$(goal "$path" "$rung" "$quantity" rms)"
+    if [[ $single != null ]]; then
+      figure "$path.$rung.$quantity.coverage.mean" "$mean" stated
+      figure "$path.$rung.$quantity.coverage.single" "$single" stated
+    fi
   done < <(jq -r '.comparisons[] | select(.seed == null and .initial == "measured") as $c | $c.quantities[]
-                  | "\($c.model) \(.quantity) \(.bias) \(.normalised_rms)"' "$1/comparison.json")
+                  | "\($c.model) \(.quantity) \(.bias) \(.normalised_rms) \(.coverage_mean) \(.coverage_single)"' "$1/comparison.json")
 }
 
 reversals() { # folder of a prediction

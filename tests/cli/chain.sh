@@ -43,7 +43,12 @@ for file in prediction.json comparison.json reduced-law.csv evolution-law.csv ev
 done
 grep -q '"normalised_rms"' comparison.json && grep -q '"largest_at_nu"' comparison.json || fail comparison
 grep -q '"rhs_evaluations"' prediction.json || fail "solver statistics"
+grep -q 'P_star_mean95,P_star_single95' evolution-law.csv && [[ $(tail -n 1 evolution-law.csv) != *,,* ]] || fail "bands"
 cd ../../..
+jq -e '.rung.needed == "evolution" and (.rung.changes | length) > 0 and (.bands | startswith("95 %"))' prediction.json >/dev/null ||
+  fail "rung and bands: $(cat prediction.json)"
+jq -e '[.comparisons[] | .P_star.coverage_mean <= .P_star.coverage_single and .P_star.coverage_single <= 1] | all' prediction.json \
+  >/dev/null || fail "coverage: $(cat prediction.json)"
 code=0
 "$grainlaw" predict out/parameters.json path.json -o out/predictions/bad --dem --seeds 2,9 2>err || code=$?
 [[ $code == 2 ]] && grep -q 'seeds: 2 was used for the calibration' err && [[ ! -e out/predictions/bad ]] || fail "seeds of the calibration were accepted"
@@ -63,6 +68,12 @@ sed 's/0.80/0.79/' path.json >other.json
 code=0
 "$grainlaw" predict out/parameters.json other.json -o bad --against out/predictions/uni 2>err || code=$?
 [[ $code == 2 ]] && grep -q 'follows another path' err && [[ ! -e bad ]] || fail "runs of another path were compared with"
+
+# parameters without errors, as older calibrations left them
+jq 'del(.covariance, .scatter)' out/parameters.json >plain.json
+"$grainlaw" predict plain.json path.json -o plain >text
+grep -q '^bands     none: the parameters have no covariance' text && [[ $(tail -n 1 plain/evolution-law.csv) == *,,,,,,,,,, ]] ||
+  fail "without covariance: $(cat text)"
 
 "$grainlaw" report out -o report.html >table.txt
 [[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report

@@ -62,6 +62,7 @@ fit::Calibration odd_calibration() {
   };
   drop("anisotropy.a2", fit::Status::not_identified);
   drop("shear.nu_c", fit::Status::fixed);
+  c.scatter = {3, 22, 1.0 / 700, 1.0 / 60, std::nan("")};
   c.nu_min = 0.1 + 0.2;
   c.nu_max = 0.82;
   c.eps_dev_max = 1.0 / 3;
@@ -167,6 +168,11 @@ void expect_same(const fit::Calibration& a, const fit::Calibration& b) {
     }
   }
   EXPECT_EQ(a.covariance, b.covariance);
+  EXPECT_EQ(a.scatter.packings, b.scatter.packings);
+  EXPECT_EQ(a.scatter.degrees_of_freedom, b.scatter.degrees_of_freedom);
+  EXPECT_EQ(a.scatter.compression, b.scatter.compression);
+  EXPECT_EQ(a.scatter.s_par, b.scatter.s_par);
+  EXPECT_EQ(std::isnan(a.scatter.F_par), std::isnan(b.scatter.F_par));
   EXPECT_EQ(a.coupling, b.coupling);
   EXPECT_EQ(a.nu_min, b.nu_min);
   EXPECT_EQ(a.nu_max, b.nu_max);
@@ -305,7 +311,12 @@ PredictionFolder small_prediction(const std::filesystem::path& folder) {
     content.comparisons.push_back({curve.model, curve.initial, seed, predict::compare(curve.prediction, test)});
     content.curves.push_back(curve);
   }
+  content.needed = {Rung::memory, "because"};
+  content.changes = {{Rung::reduced, Rung::evolution, {0.1, 0.02, 0.003}}};
+  content.bands = "of the mean curve";
+  content.curves[0].prediction.rows[1].single.s_dev = 0.0123;
   content.comparisons[1].comparison.quantities[0].bias = 0.5;
+  content.comparisons[1].comparison.quantities[0].coverage_single = 0.93;
   content.comparisons[1].comparison.quantities[0].largest = -2;
   content.comparisons[1].comparison.quantities[0].largest_at_nu = 0.71;
   return content;
@@ -323,6 +334,16 @@ TEST_F(ResultFiles, PredictionIsReadBack) {
   ASSERT_EQ(read.curves[0].prediction.rows.size(), written.curves[0].prediction.rows.size());
   ASSERT_EQ(read.comparisons.size(), written.comparisons.size());
   EXPECT_EQ(read.comparisons[1].comparison.quantities[0].bias, 0.5);
+  EXPECT_EQ(read.comparisons[1].comparison.quantities[0].coverage_single, 0.93);
+  EXPECT_TRUE(std::isnan(read.comparisons[1].comparison.quantities[0].coverage_mean));
+  EXPECT_EQ(read.curves[0].prediction.rows[1].single.s_dev, 0.0123);
+  EXPECT_TRUE(std::isnan(read.curves[0].prediction.rows[1].mean.s_dev)) << "no band";
+  EXPECT_EQ(read.needed.rung, Rung::memory);
+  EXPECT_EQ(read.needed.why, "because");
+  ASSERT_EQ(read.changes.size(), 1u);
+  EXPECT_EQ(read.changes[0].richer, Rung::evolution);
+  EXPECT_EQ(read.changes[0].difference.F, 0.003);
+  EXPECT_EQ(read.bands, "of the mean curve");
   ASSERT_TRUE(read.dem);
   EXPECT_EQ(read.dem->digest, written.dem->digest);
   std::filesystem::remove(folder_ / "comparison.json");

@@ -129,5 +129,23 @@ TEST(Compare, OtherStrainsAreRefused) {
   EXPECT_THROW(compare(s.prediction, s.test), InvalidInput);
 }
 
+TEST(Compare, CoverageIsTheShareOfRowsWithinTheBand) {
+  Scene s = scene();  // rows 2, 3, 4 count
+  for (auto& row : s.prediction.rows) {
+    row.mean.s_par = 0.01;
+    row.single.s_par = 0.02;
+  }
+  s.test.rows[0].s_par += 1;
+  s.test.rows[2].s_par += 0.009;
+  s.test.rows[3].s_par -= 0.015;
+  s.test.rows[4].s_par += 0.03;
+  const Comparison comparison = compare(s.prediction, s.test);
+  EXPECT_DOUBLE_EQ(quantity(comparison, "s_par").coverage_mean, 1. / 3);
+  EXPECT_DOUBLE_EQ(quantity(comparison, "s_par").coverage_single, 2. / 3);
+  EXPECT_TRUE(std::isnan(quantity(comparison, "P_star").coverage_mean)) << "no band, no share";
+  s.prediction.rows[4].mean.s_par = kNaN;
+  EXPECT_DOUBLE_EQ(quantity(compare(s.prediction, s.test), "s_par").coverage_mean, 1. / 2);
+}
+
 }  // namespace
 }  // namespace grainlaw::predict
