@@ -49,6 +49,24 @@ TEST(ReportFigure, UndefinedPointsAreCountedAndBreakTheLine) {
   EXPECT_EQ(count(rendered.svg, " 0 1 0 "), 2 * (4 + 1));
 }
 
+TEST(ReportFigure, BandsStretchTheAxisAndBreakWhereTheyAreUndefined) {
+  Series series = line_of({0, 1, 2, 3, 4}, {1, 1, 1, 1, 1});
+  EXPECT_EQ(count(render_svg(one_panel(series)).svg, "class=\"band\""), 0);
+  series.bands = {{5, 5, std::nan(""), 5, 5}, {1, 1, 1, 1, 1}};
+  const RenderedFigure rendered = render_svg(one_panel(series));
+  EXPECT_EQ(count(rendered.svg, "class=\"band\""), 2);
+  EXPECT_EQ(count(rendered.svg, "z\" fill=\"currentColor\" fill-opacity"), 2);
+  const std::size_t wide = rendered.svg.find("class=\"band\" d=\"") + 16;
+  const std::string path = rendered.svg.substr(wide, rendered.svg.find('"', wide) - wide);
+  EXPECT_EQ(count(path, "M"), 2) << "one piece on either side of the gap: " << path;
+  EXPECT_EQ(count(path, "L"), 6);
+  EXPECT_NE(rendered.svg.find("<text"), std::string::npos);
+  EXPECT_EQ(rendered.svg.find("nan"), std::string::npos);
+  EXPECT_EQ(rendered.undefined_points, 0) << "the points themselves are";
+  // an axis from 0 to 2 would not reach the band's edge, 6
+  EXPECT_NE(rendered.svg.find(">6<"), std::string::npos);
+}
+
 TEST(ReportFigure, ALogarithmicAxisLeavesOutWhatIsNotPositive) {
   Figure figure = one_panel(line_of({0, 1, 2, 3}, {1e-3, 0, -1, 1e-1}));
   figure.panels[0].y.logarithmic = true;
