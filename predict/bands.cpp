@@ -7,28 +7,13 @@
 namespace grainlaw::predict {
 namespace {
 
-/// A variance and how well it is known.
-struct Variance {
-  double value = 0, degrees_of_freedom = 0;
-};
-
-double half_width(const Variance& v) {
-  if (!std::isfinite(v.value)) return v.value;
-  return v.value > 0 ? student_95(v.degrees_of_freedom) * std::sqrt(v.value) : 0;
-}
-
-/// Of a quantity with slopes `g`.
-Variance of_mean(const Uncertainty& uncertainty, const Eigen::VectorXd& g) {
+/// Of the mean of a quantity with slopes `g`.
+double half_width(const Uncertainty& uncertainty, const Eigen::VectorXd& g) {
   const Eigen::VectorXd shares = g.cwiseProduct(uncertainty.covariance * g), weights = shares.cwiseAbs();
-  return {shares.sum(), weights.sum() / weights.dot(uncertainty.degrees_of_freedom.cwiseInverse())};
-}
-
-/// Welch and Satterthwaite.
-Variance sum(const Variance& a, const Variance& b) {
-  const double both = a.value + b.value;
-  const double parts = (a.value > 0 ? a.value * a.value / a.degrees_of_freedom : 0) +
-                       (b.value > 0 ? b.value * b.value / b.degrees_of_freedom : 0);
-  return {both, both * both / parts};
+  const double variance = shares.sum();
+  if (!std::isfinite(variance)) return variance;
+  if (!(variance > 0)) return 0;
+  return student_95(weights.sum() / weights.dot(uncertainty.degrees_of_freedom.cwiseInverse())) * std::sqrt(variance);
 }
 
 }  // namespace
@@ -40,6 +25,8 @@ void add_bands(const LawParameters<double>& parameters, const Uncertainty& uncer
     double scatter;
   };
   const RunScatter& scatter = uncertainty.scatter;
+  const double of_scatter = scatter.degrees_of_freedom > 0 ? student_95(scatter.degrees_of_freedom)
+                                                           : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < prediction.slopes.size(); ++i) {
     PredictedRow& row = prediction.rows[i];
     const std::vector<RowSlope>& slopes = prediction.slopes[i];
@@ -52,10 +39,9 @@ void add_bands(const LawParameters<double>& parameters, const Uncertainty& uncer
           Quantity{&RowBand::F_par, [](const RowSlope& s) { return s.F_par; }, scatter.F_par}}) {
       Eigen::VectorXd g(static_cast<Eigen::Index>(slopes.size()));
       for (std::size_t k = 0; k < slopes.size(); ++k) g(static_cast<Eigen::Index>(k)) = quantity.slope(slopes[k]);
-      const Variance mean = of_mean(uncertainty, g);
-      row.mean.*quantity.band = half_width(mean);
-      row.single.*quantity.band =
-          half_width(sum(mean, {quantity.scatter * quantity.scatter, scatter.degrees_of_freedom}));
+      const double mean = half_width(uncertainty, g);
+      row.mean.*quantity.band = mean;
+      row.single.*quantity.band = std::hypot(mean, of_scatter * quantity.scatter);
     }
   }
 }

@@ -1,10 +1,9 @@
 #pragma once
 // Two 95 % bands about a predicted curve, g = d(row)/d(parameters), V the parameters' covariance (delta method):
 //   mean curve   half width t_n sqrt(g.V g)
-//   single run   half width t_m sqrt(g.V g + s^2),  s the scatter of runs of one path on different packings
-// t_n the 97.5 % quantile of Student's distribution: errors are known from few packings. 1/n is the mean of 1/n_k of the
-// parameters, weighted by |g_k (V g)_k|, and m follows from both parts by Welch and Satterthwaite,
-//   m = (v + s^2)^2/(v^2/n + s^4/n_s),  v = g.V g.
+//   single run   half width sqrt(mean's^2 + (t_m s)^2),  s the scatter of runs of one path on different packings
+// t_n the 97.5 % quantile of Student's distribution with n degrees of freedom: errors are known from few packings. 1/n is
+// the mean of 1/n_k of the parameters, weighted by |g_k (V g)_k|; m is that of s.
 // s of P* is that of the volumetric strain times B* of ISO unloading at the row's nu; that of s_dev and F_dev is s_par's
 // and F_par's.
 

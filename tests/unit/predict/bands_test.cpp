@@ -64,9 +64,8 @@ TEST(Bands, OfASingleRunAddTheScatter) {
   uncertainty.scatter = {1e-3, 0.02, 0.01, 22};
   const LawParameters<double> p = published_parameters();
   for (const PredictedRow& row : banded(uncertainty).rows) {
-    const double v = std::pow(0.01 * row.state.P, 2), s = std::pow(1e-3 * p.isotropic.B_star(0.74), 2);
-    const double m = (v + s) * (v + s) / (v * v / 2 + s * s / 22);
-    EXPECT_NEAR(row.single.P, student_95(m) * std::sqrt(v + s), 1e-8 * row.state.P);
+    const double mean = student_95(2) * 0.01 * row.state.P, scatter = student_95(22) * 1e-3 * p.isotropic.B_star(0.74);
+    EXPECT_NEAR(row.single.P, std::hypot(mean, scatter), 1e-8 * row.state.P);
     EXPECT_NEAR(row.single.s_par, student_95(22) * 0.02, 1e-8) << "where the mean is known";
     EXPECT_NEAR(row.single.F_dev, student_95(22) * 0.01, 1e-8);
   }
