@@ -74,6 +74,17 @@ void add_calibrate(CLI::App& app, Common& common, Task& task) {
   command->add_option("SPEC", options->spec, "SPEC.json; may be left out with --dataset");
   command->add_option("-o,--output", options->output, "folder of the calibration")->required();
   command->add_option("--dataset", options->dataset, "fit this data set without running DEM");
+  CLI::Option* target =
+      command
+          ->add_option(
+              "--target-error", options->target_error,
+              "add packings until the prediction along --for is known to this, e.g. 0.02: half width of its 95 % "
+              "band over the largest value")
+          ->check(CLI::Range(1e-4, 1.0));
+  command->add_option("--for", options->target_path, "PATH.json of that prediction")->needs(target);
+  command->add_option("--max-cost", options->max_cost, "seconds after which no packings are added")
+      ->needs(target)
+      ->check(CLI::Range(0.0, 1e9));
   command->add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Coupling>{{"energy", Coupling::energy}, {"single", Coupling::single}}));

@@ -1,5 +1,6 @@
 #pragma once
-// grainlaw calibrate SPEC.json -o DIR: packings -> element tests -> data set -> fit -> parameters.
+// grainlaw calibrate SPEC.json -o DIR: packings -> element tests -> data set -> fit -> parameters; with --target-error
+// with as many packings as a prediction needs.
 
 #include <filesystem>
 #include <optional>
@@ -11,10 +12,13 @@
 namespace grainlaw::app {
 
 struct CalibrateOptions {
-  std::filesystem::path spec;        ///< SPEC.json; may be empty with `dataset`
-  std::filesystem::path output;      ///< folder of the calibration
-  std::filesystem::path dataset;     ///< fit this data set instead of running DEM; may be empty
-  std::optional<Coupling> coupling;  ///< instead of the spec's
+  std::filesystem::path spec;          ///< SPEC.json; may be empty with `dataset`
+  std::filesystem::path output;        ///< folder of the calibration
+  std::filesystem::path dataset;       ///< fit this data set instead of running DEM; may be empty
+  std::optional<Coupling> coupling;    ///< instead of the spec's
+  std::optional<double> target_error;  ///< wanted half width of the 95 % band of the prediction along `target_path` [-]
+  std::filesystem::path target_path;   ///< PATH.json of that prediction
+  double max_cost = 0;                 ///< of all rounds together; 0: no limit [s]
 };
 
 ExitCode calibrate(const CalibrateOptions& options, Session& session);
