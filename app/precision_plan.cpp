@@ -19,6 +19,7 @@ namespace {
 constexpr int kPointsPerSegment = 100;
 constexpr int kLeastPackings = 3;    // two say nearly nothing of their scatter: t = 12.7
 constexpr int kMostPackings = 1000;  // as many as a SPEC has seeds
+constexpr int kGrowth = 3;           // at most so many times the packings in one round: few know their own error badly
 constexpr double kSlack = 1.05;      // packings beyond those needed by the estimate, which is itself uncertain
 
 Rung richest(const fit::Calibration& c) {
@@ -143,7 +144,7 @@ PrecisionPlan reach(const PrecisionTarget& target, Spec spec,
     }
     if (last.error.discrepancy > target.error) return ended(PlanOutcome::discrepancy);
     int wanted = packings_needed(last.error.half_width, packings, target.error);
-    wanted = std::max(packings + 1, static_cast<int>(std::ceil(kSlack * wanted)));
+    wanted = std::clamp(static_cast<int>(std::ceil(kSlack * wanted)), packings + 1, kGrowth * packings);
     if (target.max_seconds > 0) {
       const double per_packing = last.seconds / packings;
       wanted = std::min(wanted, packings + static_cast<int>((target.max_seconds - last.seconds) / per_packing));
