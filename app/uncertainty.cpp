@@ -29,7 +29,8 @@ predict::Uncertainty uncertainty_of(const fit::Calibration& calibration) {
 std::string text_of(const predict::Uncertainty& uncertainty) {
   if (uncertainty.parameters.empty()) return "none: the parameters have no covariance; calibrate again";
   if (!std::isfinite(uncertainty.scatter.compression))
-    return "95 %, of the mean curve only: the parameters have no scatter between packings; calibrate with two seeds";
+    return "95 %, of the mean curve only: the parameters have no scatter between packings; calibrate again, with two "
+           "seeds or more";
   return "95 %, of the mean curve and of a single run";
 }
 
