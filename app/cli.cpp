@@ -88,6 +88,17 @@ void add_calibrate(CLI::App& app, Common& common, Task& task) {
   command->add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Coupling>{{"energy", Coupling::energy}, {"single", Coupling::single}}));
+  command
+      ->add_option("--loss", options->loss,
+                   "squares (default) or huber: rows that are far off, in units of their scatter, count for less")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, fit::Loss>{{"squares", fit::Loss::squares}, {"huber", fit::Loss::huber}}));
+  command->add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command->add_flag("--checks", options->checks,
+                    "fits without each packing in turn, and likelihood profiles of doubtful parameters; takes several "
+                    "times as long as the fit");
   add_checkpoints(*command, common);
   add_common(*command, common);
   command->callback([options, &task] { task = [options](Session& session) { return calibrate(*options, session); }; });

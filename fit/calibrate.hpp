@@ -34,6 +34,7 @@ struct Calibration {
   std::vector<std::string> unused_tests;            ///< calibration tests that no stage reads, e.g. ISO loading
   std::vector<std::string> warnings;                ///< about the data, e.g. rows that stand out (outliers.hpp)
   PackingScatter scatter;                           ///< between runs of one path on different packings
+  std::vector<LeftOut> left_out;                    ///< one per packing, when asked for (leave_one_out.hpp)
   double nu_min = 0, nu_max = 0;                    ///< range of volume fraction of the rows that entered [-]
   double eps_dev_max = 0, eps_vol_max = 0;          ///< largest |strain| of the calibration tests that entered [-]
   bool converged = false;                           ///< all stages

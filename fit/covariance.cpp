@@ -148,4 +148,12 @@ Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool
   return moved;
 }
 
+Eigen::VectorXd naive_variance(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free) {
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(jacobian.cols());
+  const std::vector<Eigen::Index> columns = columns_of(free);
+  if (columns.empty()) return variance;
+  variance(columns) = factor_of(jacobian(Eigen::all, columns)).L.rowwise().squaredNorm();
+  return variance;
+}
+
 }  // namespace grainlaw::fit

@@ -42,4 +42,7 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
 /// Parameters x columns.
 Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free, const Eigen::MatrixXd& change);
 
+/// Diagonal of H^+: variances were rows independent and of unit variance. Zero for parameters that are not free.
+Eigen::VectorXd naive_variance(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free);
+
 }  // namespace grainlaw::fit

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "fit/inherited_error.hpp"
+#include "fit/profile.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -136,10 +137,12 @@ std::vector<StageFit> fit_state_law(const std::string& prefix, const std::vector
                                     const std::string& window, StateLaw<double>& law, const CalibrationOptions& options,
                                     const RunControl& control) {
   std::vector<StageFit> fits;
-  const auto run = [&](const std::string& stage, const DensityProblem& problem, int densities_needed) -> StageFit& {
+  std::vector<DensityProblem> problems;
+  const auto run = [&](const std::string& stage, DensityProblem problem, int densities_needed) -> StageFit& {
     fits.push_back(fit_stage(prefix + stage, window + ", rows unweighted", problem.parameters, problem.blocks,
-                             kMoreDensities, options.threads, control));
+                             kMoreDensities, options.threads, control, {options.loss}));
     require_densities(fits.back(), series, densities_needed);
+    problems.push_back(std::move(problem));
     return fits.back();
   };
   // Starts below the data, whatever the caller's guess of the jamming density was.
@@ -160,6 +163,8 @@ std::vector<StageFit> fit_state_law(const std::string& prefix, const std::vector
                fits[1]);
   const StageFit& P = run("pressure", pressure_problem(prefix, series, law.pressure), 3);
   law.pressure = {P.solution.x(0), P.solution.x(1), P.solution.x(2)};
+  for (std::size_t i = 0; i < fits.size() && options.profiles; ++i)
+    profile_doubtful(problems[i].parameters, problems[i].blocks, options.threads, control, fits[i]);
   return fits;
 }
 
@@ -177,8 +182,9 @@ StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string
       series, "mean_overlap", 1,
       [nu_c](const DensityPoint& p, const auto* x) { return x[0] * std::log(p.nu / nu_c) - p.mean_overlap; },
       [](const DensityPoint& p) { return p.mean_overlap; });
-  StageFit fit = fit_stage("overlap", window + fmt::format(", rows unweighted, nu_c = {:.5f} of the pressure", nu_c),
-                           {free_parameter("overlap.D", start)}, blocks, kMoreDensities, options.threads, control);
+  StageFit fit =
+      fit_stage("overlap", window + fmt::format(", rows unweighted, nu_c = {:.5f} of the pressure", nu_c),
+                {free_parameter("overlap.D", start)}, blocks, kMoreDensities, options.threads, control, {options.loss});
   const double D = fit.solution.x(0);
   inherit_nu_c(pressure, slope_of(series, [&](const DensityPoint&) { return -D / nu_c; }), fit);
   return fit;
@@ -190,7 +196,7 @@ StageFit fit_fabric_trace(const std::vector<DensitySeries>& series, const std::s
       series, "F_v", 1, [](const DensityPoint& p, const auto* x) { return x[0] * (p.nu * p.C()) - p.F_v; },
       [](const DensityPoint& p) { return p.F_v; });
   return fit_stage("fabric_trace", window + ", rows unweighted, measured C", {free_parameter("fabric.g3", start)},
-                   blocks, kMoreDensities, options.threads, control);
+                   blocks, kMoreDensities, options.threads, control, {options.loss});
 }
 
 }  // namespace grainlaw::fit

@@ -114,7 +114,7 @@ StageFit fit_density_law(const ShearQuantity& quantity, const std::vector<ShearF
 
   const DensityLawProblem problem = density_law_problem(name, tests, cluster_of_test, values, law.shear_nu_c);
   StageFit fit = fit_stage(name, fmt::format("values of the stage shear, relative, nu_c = {:g} fixed", law.shear_nu_c),
-                           problem.parameters, problem.blocks, remedy, options.threads, control);
+                           problem.parameters, problem.blocks, remedy, options.threads, control, {options.loss});
   law.*quantity.law = {fit.solution.x(0), fit.solution.x(1), fit.solution.x(2)};
   settle_constant_law(fit, name);
   if (found < kDensitiesNeeded) {

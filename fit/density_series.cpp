@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/steady_state.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::fit {
@@ -82,10 +83,10 @@ std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const C
     if (test->path.segments.front().mode != mode) continue;
     DensitySeries series{test->name, packing_of(data, *test), 0, {}};
     std::vector<DensityPoint> steady;
+    const double from = steady_onset(*test).from(options.steady_from);
     for (std::size_t i = 0; i < test->rows.size(); ++i) {
       const Observation& row = test->rows[i];
-      if (deviatoric_norm(row.strain.tensor - test->rows.front().strain.tensor) >= options.steady_from - 1e-9 &&
-          is_jammed(row))
+      if (deviatoric_norm(row.strain.tensor - test->rows.front().strain.tensor) >= from - 1e-9 && is_jammed(row))
         steady.push_back(point_of(*test, i));
       else
         ++series.excluded;

@@ -35,7 +35,8 @@ std::vector<DensitySeries> unloading_series(const std::vector<const TestRecord*>
 /// Those of the ISO unloading tests. Throws InvalidInput, too, when no four rows are in the window.
 std::vector<DensitySeries> isotropic_series(const DataSet& data, const CalibrationOptions& options);
 
-/// One point per test of `mode` at constant volume: means over eps_dev >= steady_from. Tests that end before, or are not jammed there, are absent.
+/// One point per test of `mode` at constant volume: means over eps_dev >= steady_from, or from where the
+/// test is steady if that is later. Tests that end before, or are not jammed there, are absent.
 std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const CalibrationOptions& options);
 
 /// A row without a network that carries: contacts may exist, P* is below what any jammed state here has.

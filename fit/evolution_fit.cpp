@@ -8,6 +8,7 @@
 
 #include "fit/density_law_fit.hpp"
 #include "fit/density_series.hpp"
+#include "fit/profile.hpp"
 #include "fit/shear_fit.hpp"
 
 namespace grainlaw::fit {
@@ -145,7 +146,7 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
   const EvolutionProblem problem = evolution_problem(trajectories, law, held, options);
   StageFit fit = fit_stage("evolution", window_text(options), problem.parameters, problem.blocks,
                            "the trajectories do not determine it; test more densities, and D2 to steady state",
-                           options.threads, control);
+                           options.threads, control, {options.loss, options.starts});
   const std::string remedy =
       "add a test that shears and then changes the volume, e.g. D2 to eps_dev = 0.15 and then ISO "
       "to nu + 0.03 and back";
@@ -163,6 +164,7 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
     for (const ShearQuantity& quantity : kShearQuantities) settle_constant_law(fit, quantity.name);
     for (const Pair& pair : kPairs) judge_pair(fit, trajectories, law, pair, options);
     if (anisotropy) judge_coupling(fit, coupling, remedy);
+    if (options.profiles) profile_doubtful(problem.parameters, problem.blocks, options.threads, control, fit);
   }
   if (!anisotropy) fit.stage.estimates.push_back({coupling, {0, std::nan(""), Status::not_identified, remedy}});
   return fit;

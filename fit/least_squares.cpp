@@ -26,7 +26,6 @@ constexpr double kGradientCosine = 1e-5;  // |cos| between the residual and ever
 constexpr double kExact = 1e-9;           // misfit over data below which the cosine is that of rounding errors
 constexpr double kOnBound = 1e-7;         // distance in units of the parameter's scale
 constexpr double kSettled = 1e-9;         // relative decrease of the cost over a whole round that is none
-constexpr int kIterationsPerRound = 8, kRounds = 60;
 
 /// All blocks as one cost function of x/scale.
 class Blocks : public ceres::CostFunction {
@@ -166,10 +165,10 @@ std::string listed(const std::vector<FreeParameter>& parameters, const Eigen::Ve
   return text;
 }
 
-ceres::Solver::Options solver_options(ceres::IterationCallback* callback) {
+ceres::Solver::Options solver_options(ceres::IterationCallback* callback, int iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = kIterationsPerRound;
+  options.max_num_iterations = iterations;
   options.function_tolerance = 1e-16;
   options.gradient_tolerance = 1e-16;
   options.parameter_tolerance = 1e-12;
@@ -202,7 +201,7 @@ void evaluate(const Blocks& cost, const Eigen::VectorXd& z, const std::vector<Fr
 
 /// A few iterations from `z` with the parameters `held` taken out.
 ceres::Solver::Summary solve_round(Blocks& cost, const std::vector<FreeParameter>& parameters,
-                                   const std::vector<int>& held, double radius, StopOnRequest& stop,
+                                   const std::vector<int>& held, double radius, int iterations, StopOnRequest& stop,
                                    Eigen::VectorXd& z) {
   ceres::Problem::Options keep;
   keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -214,7 +213,7 @@ ceres::Solver::Summary solve_round(Blocks& cost, const std::vector<FreeParameter
     problem.SetParameterUpperBound(z.data(), static_cast<int>(k), p.upper / p.scale);
   }
   if (!held.empty()) problem.SetManifold(z.data(), new ceres::SubsetManifold(static_cast<int>(z.size()), held));
-  ceres::Solver::Options options = solver_options(&stop);
+  ceres::Solver::Options options = solver_options(&stop, iterations);
   options.initial_trust_region_radius = radius;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
@@ -230,7 +229,7 @@ FreeParameter free_parameter(const std::string& name, double start) {
 }
 
 Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks, int threads,
-               const std::string& stage, const RunControl& control) {
+               const std::string& stage, const RunControl& control, const SolverEffort& effort) {
   if (control.stop.stop_requested()) throw Interrupted("fit: stopped on request");
   const auto begin = std::chrono::steady_clock::now();
   const auto n = static_cast<Eigen::Index>(parameters.size());
@@ -266,8 +265,8 @@ Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<R
   std::vector<int> held = held_by_bounds(solution, parameters);
   if (static_cast<Eigen::Index>(held.size()) == n) held.clear();
   double radius = 1e4;  // Ceres's own start
-  for (int round = 0; round < kRounds; ++round) {
-    const ceres::Solver::Summary summary = solve_round(cost, parameters, held, radius, stop, z);
+  for (int round = 0; round < effort.rounds; ++round) {
+    const ceres::Solver::Summary summary = solve_round(cost, parameters, held, radius, effort.iterations, stop, z);
     if (control.stop.stop_requested()) throw Interrupted("fit: stopped on request in stage " + stage);
     if (!summary.iterations.empty()) radius = std::clamp(summary.iterations.back().trust_region_radius, 1e2, 1e8);
     solution.iterations += std::max(0, summary.num_successful_steps + summary.num_unsuccessful_steps);
@@ -285,7 +284,7 @@ Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<R
         stopped || !flat
             ? fmt::format("{}: {}", ceres::TerminationTypeToString(summary.termination_type), summary.message)
             : fmt::format("CONVERGENCE: the cost changed by less than {:g} of itself in {} iterations.", kSettled,
-                          kIterationsPerRound);
+                          effort.iterations);
     if (solution.converged) break;
     if (next == held && stopped) {  // no better by trying again
       solution.termination += " (but the gradient does not vanish)";

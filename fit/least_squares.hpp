@@ -37,9 +37,14 @@ struct Solution {
   double seconds = 0;
 };
 
+/// How long is searched: rounds, between which parameters are taken out or let go at their bounds, of so many iterations.
+struct SolverEffort {
+  int rounds = 60, iterations = 8;
+};
+
 /// A problem that cannot be evaluated at its start, or is solved badly, returns with converged = false and says so in
 /// `termination`. Throws Interrupted.
 Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks, int threads,
-               const std::string& stage, const RunControl& control);
+               const std::string& stage, const RunControl& control, const SolverEffort& effort = {});
 
 }  // namespace grainlaw::fit

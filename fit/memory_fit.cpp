@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "fit/evolution_fit.hpp"
+#include "fit/profile.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -125,9 +126,9 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
       "back";
   const bool volumetric = contains_anisotropy(trajectories);
   const MemoryProblem problem = memory_problem(trajectories, law, volumetric, options);
-  StageFit fit =
-      fit_stage("memory", window_text(options), problem.parameters, problem.blocks,
-                "the trajectories do not determine it; shear at more and at lower densities", options.threads, control);
+  StageFit fit = fit_stage("memory", window_text(options), problem.parameters, problem.blocks,
+                           "the trajectories do not determine it; shear at more and at lower densities",
+                           options.threads, control, {options.loss, options.starts});
   if (fit.solution.defined) {
     inherit_error(
         kGivenLaws, found, law,
@@ -147,6 +148,7 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
                       (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));
     }
   }
+  if (options.profiles) profile_doubtful(problem.parameters, problem.blocks, options.threads, control, fit);
   if (!volumetric) {
     for (const char* name : {"memory.c_F", "memory.a2"})
       fit.stage.estimates.push_back({name, {0, std::nan(""), Status::not_identified, remedy}});

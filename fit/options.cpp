@@ -8,6 +8,8 @@
 
 namespace grainlaw::fit {
 
+std::string to_string(Loss loss) { return loss == Loss::huber ? "huber" : "squares"; }
+
 void check(const CalibrationOptions& options) {
   const auto positive = [](double value, const char* field) {
     if (!(std::isfinite(value) && value > 0)) {
@@ -27,6 +29,9 @@ void check(const CalibrationOptions& options) {
   if (options.steady_from < options.rate_window) {
     throw InvalidInput(fmt::format("calibration options: steady_from {} lies before rate_window {}",
                                    options.steady_from, options.rate_window));
+  }
+  if (options.starts < 1) {
+    throw InvalidInput(fmt::format("calibration options: starts is {}; give at least 1", options.starts));
   }
   if (options.threads < 1) {
     throw InvalidInput(fmt::format("calibration options: threads is {}; give at least 1", options.threads));

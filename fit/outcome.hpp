@@ -44,9 +44,36 @@ struct TestResidual {
   bool in_cost = true;      ///< false: shown, not fitted (the stage's window says why)
   int rows = 0;             ///< rows that entered
   int rows_excluded = 0;    ///< rows of the test outside the window (nu <= nu_c, strain window)
+  int rows_lightened = 0;   ///< by Huber's loss, rows in the cost that count for less than half
   double rms = 0;           ///< root mean square of model - data in the unit of the quantity
   double bias = 0;          ///< mean of model - data
   double max_abs_data = 0;  ///< to normalise by
+};
+
+/// Cost of a stage with one parameter held and all others fitted again, profile.hpp.
+struct ProfilePoint {
+  double value = 0;   ///< of the parameter
+  double excess = 0;  ///< of the cost, in units of that at the ends of the 95 % interval; NaN: model not defined
+};
+struct Profile {
+  std::string parameter;
+  std::string reason;                ///< why it was looked at
+  double lower = 0, upper = 0;       ///< ends of the 95 % interval; NaN: not bounded within the parameter's bounds
+  std::vector<ProfilePoint> points;  ///< values ascending
+  std::string experiment;            ///< what would narrow it; may be empty
+};
+
+/// Where solutions from several starts ended, many_starts.hpp.
+struct StartSearch {
+  int tried = 1, at_minimum = 1;                                ///< starts; those that ended at the lowest cost
+  double next_cost = std::numeric_limits<double>::quiet_NaN();  ///< of the next minimum; NaN: there is none
+};
+
+/// A calibration without one packing, leave_one_out.hpp.
+struct LeftOut {
+  std::uint64_t seed = 0;     ///< of the packing
+  std::vector<double> value;  ///< in the order of parameter_table(); NaN where not identified
+  std::string note;           ///< what went wrong; may be empty
 };
 
 struct Stage {
@@ -58,6 +85,8 @@ struct Stage {
   bool converged = false;
   double seconds = 0;
   std::vector<TestResidual> tests;
+  StartSearch starts;
+  std::vector<Profile> profiles;         ///< of the doubtful parameters, when asked for
   std::vector<NamedEstimate> estimates;  ///< of the parameters free in this stage; a later stage may refine them
 };
 
@@ -72,6 +101,9 @@ struct ShearFit {
   double s_0 = 0, F_0 = 0;                              ///< start values, measured in the first row [-]
   double s_steady = 0, F_steady = 0;                    ///< steady means; NaN when the test ends before steady_from [-]
   double C_star = 0, rattler_fraction = 0, P_star = 0;  ///< steady means, likewise [-]
+  double steady_from = 0;                               ///< eps_dev from which these means are taken [-]
+  double steady_since_s = 0, steady_since_F = 0,
+         steady_since_P = 0;  ///< detected onsets, steady_state.hpp; NaN: none [-]
 };
 
 }  // namespace grainlaw::fit

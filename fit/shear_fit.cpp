@@ -10,6 +10,7 @@
 #include "fit/density_series.hpp"
 #include "fit/measured_state.hpp"
 #include "fit/shear_window.hpp"
+#include "fit/steady_state.hpp"
 #include "model/reduced_law.hpp"
 
 namespace grainlaw::fit {
@@ -42,7 +43,7 @@ Curve fit_curve(const SaturationProblem& problem, double start, double scale, co
   Curve curve;
   const std::string& quantity = problem.blocks.front().channels.front().quantity;
   const StageFit fit = fit_stage("shear " + problem.blocks.front().test, "", problem.parameters, problem.blocks,
-                                 "the rows do not determine it", options.threads, control);
+                                 "the rows do not determine it", options.threads, control, {options.loss});
   curve.limit = fit.stage.estimates[0].estimate;
   curve.rate = fit.stage.estimates[1].estimate;
   for (Estimate* e : {&curve.limit, &curve.rate}) {
@@ -139,13 +140,18 @@ ShearFit fit_shear(const TestRecord& test, double nu_c, const CalibrationOptions
   std::vector<double> eps_dev, s, F;
   double C_star = 0, phi_r = 0, P = 0, s_sum = 0, F_sum = 0;
   int steady = 0;
+  const SteadyOnset onset = steady_onset(test);
+  fit.steady_from = onset.from(options.steady_from);
+  fit.steady_since_s = onset.s;
+  fit.steady_since_F = onset.F;
+  fit.steady_since_P = onset.P;
   for (const Observation& row : test.rows) {
     if (!is_jammed(row)) continue;  // s is undefined without pressure; counted as excluded below
     const LawState<double> state = measured_state(test, row);
     eps_dev.push_back(deviatoric_norm(row.strain.tensor - first.strain.tensor));
     s.push_back(state.sigma.dot(direction.N) / state.P);
     F.push_back(state.F.dot(direction.N));
-    if (eps_dev.back() >= options.steady_from - 1e-9) {
+    if (eps_dev.back() >= fit.steady_from - 1e-9) {
       ++steady;
       C_star += row.C_star;
       phi_r += row.rattler_fraction;
@@ -167,8 +173,8 @@ ShearFit fit_shear(const TestRecord& test, double nu_c, const CalibrationOptions
   };
   const int rows = static_cast<int>(test.rows.size());
   if (fit.nu <= nu_c || !is_jammed(first)) {
-    stage.tests.push_back({test.name, "s_par", false, 0, rows, 0, 0, 0});
-    stage.tests.push_back({test.name, "F_par", false, 0, rows, 0, 0, 0});
+    stage.tests.push_back({test.name, "s_par", false, 0, rows, 0, 0, 0, 0});
+    stage.tests.push_back({test.name, "F_par", false, 0, rows, 0, 0, 0, 0});
     return unfit(
         fmt::format("not jammed at the start (nu = {:.5g}, nu_c = {:.5g}, P* = {:.3g})", fit.nu, nu_c, first.P_star));
   }

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "fit/covariance.hpp"
+#include "fit/many_starts.hpp"
+#include "fit/robust.hpp"
 #include "model/error.hpp"
 #include "model/parameters.hpp"
 
@@ -33,6 +35,8 @@ std::vector<TestResidual> misfit_per_test(const std::vector<ResidualBlock>& bloc
       }
       at->in_cost = at->in_cost || (w.size() > 0 && w.maxCoeff() > 0);
       at->rows += channel.rows;
+      at->rows_lightened += static_cast<int>(
+          (w.array() < std::sqrt(0.5) * block.weight.segment(channel.first, channel.rows).array()).count());
       at->rows_excluded += channel.excluded;
       at->max_abs_data = std::max(at->max_abs_data, channel.max_abs_data);
       if (channel.rows > 0) {  // sums for now, divided below
@@ -87,9 +91,13 @@ void StageFit::mark_not_identified(const std::string& name, const std::string& n
 
 StageFit fit_stage(const std::string& name, const std::string& window, const std::vector<FreeParameter>& parameters,
                    const std::vector<ResidualBlock>& blocks, const std::string& remedy, int threads,
-                   const RunControl& control) {
+                   const RunControl& control, const Search& search) {
   StageFit fit;
-  fit.solution = solve(parameters, blocks, threads, name, control);
+  const auto solve_one = [&](const std::vector<FreeParameter>& from) {
+    return search.loss == Loss::huber ? solve_huber(from, blocks, threads, name, control)
+                                      : solve(from, blocks, threads, name, control);
+  };
+  fit.solution = solve_from_many(parameters, search.starts, solve_one, fit.stage.starts);
   const Solution& solution = fit.solution;
   Stage& stage = fit.stage;
   stage.name = name;

@@ -54,7 +54,8 @@ void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, c
                      const RunControl& control) {
   const std::vector<DensitySeries> series = steady_series(data, mode, options);
   const std::string window =
-      fmt::format("means of {} over eps_dev >= {:g}, one row per test", to_string(mode), options.steady_from);
+      fmt::format("means of {} over eps_dev >= {:g}, or from where it is steady (shear[]), one row per test",
+                  to_string(mode), options.steady_from);
   if (!series.empty()) {
     for (const StageFit& fit :
          fit_state_law("steady_", series, window, calibration.parameters.steady, options, control)) {

@@ -19,6 +19,7 @@
 #include "app/report/report.hpp"
 #include "app/verdicts.hpp"
 #include "fit/calibrate.hpp"
+#include "fit/leave_one_out.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
@@ -96,8 +97,12 @@ std::string summary_of(const fs::path& output, const Dataset& dataset, bool conv
 fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output,
                               Session& session) {
   session.progress.begin({1}, "");
-  const fit::Calibration calibration =
-      fit::calibrate(tests_of(dataset, Role::calibration), options, session.progress.control(0, "fit", session.stop));
+  const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
+  fit::Calibration calibration = fit::calibrate(tests, options, session.progress.control(0, "fit", session.stop));
+  if (options.profiles) {
+    calibration.left_out =
+        fit::leave_one_out(tests, options, session.progress.control(0, "fit without one packing", session.stop));
+  }
   ModeComparison modes;
   modes.descriptions =
       fit::describe(tests_of(dataset, Role::description), calibration.parameters.isotropic.pressure.nu_c, options,
@@ -179,6 +184,9 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   if (!given) check_tests(calibration_tests(plan(*spec)), options.spec.string());
   fit::CalibrationOptions fit_options;
   fit_options.threads = session.threads;
+  fit_options.loss = options.loss;
+  fit_options.starts = options.starts;
+  fit_options.profiles = options.checks;
   fit_options.coupling = options.coupling.value_or(spec ? spec->coupling : Coupling::energy);
   if (spec) spec->coupling = fit_options.coupling;
 

@@ -7,6 +7,7 @@
 
 #include "app/exit_code.hpp"
 #include "app/session.hpp"
+#include "fit/options.hpp"
 #include "model/parameters.hpp"
 
 namespace grainlaw::app {
@@ -19,6 +20,9 @@ struct CalibrateOptions {
   std::optional<double> target_error;  ///< wanted half width of the 95 % band of the prediction along `target_path` [-]
   std::filesystem::path target_path;   ///< PATH.json of that prediction
   double max_cost = 0;                 ///< of all rounds together; 0: no limit [s]
+  fit::Loss loss = fit::Loss::squares;
+  int starts = 1;       ///< of the coupled fits
+  bool checks = false;  ///< fits without one packing, likelihood profiles
 };
 
 ExitCode calibrate(const CalibrateOptions& options, Session& session);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/files/estimate_json.hpp"
+#include "app/files/fit_checks_json.hpp"
 #include "app/one_line.hpp"
 #include "fit/curve_error.hpp"
 #include "model/density_curves.hpp"
@@ -20,6 +21,7 @@ OrderedJson residual_to_json(const fit::TestResidual& r) {
           {"in_cost", r.in_cost},
           {"rows", r.rows},
           {"rows_excluded", r.rows_excluded},
+          {"rows_lightened", r.rows_lightened},
           {"rms", number_or_null(r.rms)},
           {"bias", number_or_null(r.bias)},
           {"max_abs_data", number_or_null(r.max_abs_data)}};
@@ -32,6 +34,7 @@ fit::TestResidual residual_from_json(const Json& object) {
   r.in_cost = object.at("in_cost");
   r.rows = object.at("rows");
   r.rows_excluded = object.at("rows_excluded");
+  r.rows_lightened = object.at("rows_lightened");
   r.rms = number_or_nan(object.at("rms"));
   r.bias = number_or_nan(object.at("bias"));
   r.max_abs_data = number_or_nan(object.at("max_abs_data"));
@@ -49,6 +52,9 @@ OrderedJson stage_to_json(const fit::Stage& stage) {
                      {"termination", stage.termination},
                      {"converged", stage.converged},
                      {"seconds", stage.seconds}};
+  object["starts"] = starts_to_json(stage.starts);
+  OrderedJson& profiles = object["profiles"] = OrderedJson::array();
+  for (const fit::Profile& profile : stage.profiles) profiles.push_back(profile_to_json(profile));
   OrderedJson& estimates = object["estimates"] = OrderedJson::object();
   for (const fit::NamedEstimate& named : stage.estimates) estimates[named.name] = estimate_to_json(named.estimate);
   OrderedJson& tests = object["tests"] = OrderedJson::array();
@@ -68,6 +74,8 @@ fit::Stage stage_from_json(const Json& object) {
   stage.termination = object.at("termination");
   stage.converged = object.at("converged");
   stage.seconds = object.at("seconds");
+  stage.starts = starts_from_json(object.at("starts"));
+  for (const Json& profile : object.at("profiles")) stage.profiles.push_back(profile_from_json(profile));
   for (const auto& item : object.at("estimates").items())
     stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
   for (const Json& residual : object.at("tests")) stage.tests.push_back(residual_from_json(residual));
@@ -75,7 +83,7 @@ fit::Stage stage_from_json(const Json& object) {
 }
 
 // The numbers of a shear fit that are no estimates, under their JSON keys.
-constexpr std::array<std::pair<const char*, double fit::ShearFit::*>, 9> kShearNumbers{{
+constexpr std::array<std::pair<const char*, double fit::ShearFit::*>, 13> kShearNumbers{{
     {"nu", &fit::ShearFit::nu},
     {"eps_dev_max", &fit::ShearFit::eps_dev_max},
     {"s_0", &fit::ShearFit::s_0},
@@ -85,6 +93,10 @@ constexpr std::array<std::pair<const char*, double fit::ShearFit::*>, 9> kShearN
     {"C_star", &fit::ShearFit::C_star},
     {"rattler_fraction", &fit::ShearFit::rattler_fraction},
     {"P_star", &fit::ShearFit::P_star},
+    {"steady_from", &fit::ShearFit::steady_from},
+    {"steady_since_s", &fit::ShearFit::steady_since_s},
+    {"steady_since_F", &fit::ShearFit::steady_since_F},
+    {"steady_since_P", &fit::ShearFit::steady_since_P},
 }};
 constexpr std::array<std::pair<const char*, fit::Estimate fit::ShearFit::*>, 4> kShearEstimates{{
     {"s_max", &fit::ShearFit::s_max},
@@ -188,14 +200,22 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
   document["format_version"] = 1;
   document["coupling"] = to_string(calibration.coupling);
   document["converged"] = calibration.converged;
-  document["options"] = {{"iso_nu_min", options.iso_nu_min},         {"rate_window", options.rate_window},
-                         {"steady_from", options.steady_from},       {"stiffness_window", options.stiffness_window},
-                         {"lag_window", options.lag_window},         {"max_step", options.max_step},
-                         {"pressure_scale", options.pressure_scale}, {"stress_scale", options.stress_scale},
-                         {"fabric_scale", options.fabric_scale}};
+  document["options"] = {{"iso_nu_min", options.iso_nu_min},
+                         {"rate_window", options.rate_window},
+                         {"steady_from", options.steady_from},
+                         {"steady_weight", options.steady_weight},
+                         {"stiffness_window", options.stiffness_window},
+                         {"lag_window", options.lag_window},
+                         {"max_step", options.max_step},
+                         {"pressure_scale", options.pressure_scale},
+                         {"stress_scale", options.stress_scale},
+                         {"fabric_scale", options.fabric_scale},
+                         {"loss", to_string(options.loss)},
+                         {"starts", options.starts}};
   document["dataset_digest"] = dataset_digest;
   document["stages"] = stages_to_json(calibration);
   document["shear"] = shears_to_json(calibration);
+  document["leave_one_out"] = left_out_to_json(calibration);
   document["curves"] = curves_to_json(calibration, "");
   OrderedJson& descriptions = document["descriptions"] = OrderedJson::array();
   for (const fit::Description& d : modes.descriptions) descriptions.push_back(description_to_json(d));
@@ -212,6 +232,7 @@ ModeComparison read_calibration(const std::filesystem::path& file, fit::Calibrat
   ModeComparison modes;
   try {
     read_stages(document, calibration);
+    calibration.left_out = left_out_from_json(document.at("leave_one_out"));
     for (const Json& object : document.at("descriptions")) {
       modes.descriptions.push_back({object.at("name"), {}});
       read_stages(object, modes.descriptions.back().calibration);

@@ -103,6 +103,18 @@ Section predictions(const ReportInput& input) {
   return section;
 }
 
+Section checks(const fit::Calibration& calibration) {
+  Section section{"checks", "How far the fit can be trusted", {}};
+  const Table left_out = left_out_table(calibration), profiles = profile_table(calibration);
+  if (left_out.rows.empty() && profiles.rows.empty())
+    section.blocks.push_back(
+        paragraph_html(plain("Neither fits without one packing nor likelihood profiles were made.")));
+  if (!left_out.rows.empty()) section.blocks.push_back(table_html(left_out));
+  if (!profiles.rows.empty()) section.blocks.push_back(table_html(profiles));
+  section.blocks.push_back(folded("Where shear is steady", table_html(steady_table(calibration))));
+  return section;
+}
+
 }  // namespace
 
 Page make_page(const ReportInput& input) {
@@ -140,6 +152,7 @@ Page make_page(const ReportInput& input) {
                            {paragraph_html(plain(dilatancy_gap(input))), figure_html(residual_figure(input)),
                             folded("All numbers, test by test", table_html(residual_table(calibration))),
                             folded("Stages of the fit", table_html(stage_table(calibration)))}});
+  page.sections.push_back(checks(calibration));
   std::string warnings;
   for (const std::string& warning : input.run_warnings) warnings += "<li>" + to_html(plain(warning)) + "</li>\n";
   if (warnings.empty()) warnings = "<li>none</li>\n";

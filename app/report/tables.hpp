@@ -21,6 +21,12 @@ Table jamming_table(const std::vector<Verdict>& verdicts);
 Table stage_table(const fit::Calibration& calibration);
 /// Misfit of the coupled fit per test and quantity.
 Table residual_table(const fit::Calibration& calibration);
+/// Leave-one-seed-out: largest shift and jackknife error of each parameter beside its stated error.
+Table left_out_table(const fit::Calibration& calibration);
+/// Likelihood profiles of the doubtful parameters.
+Table profile_table(const fit::Calibration& calibration);
+/// Detected onsets of the steady state, test by test.
+Table steady_table(const fit::Calibration& calibration);
 /// Bias and normalised RMS of every model and start, mean over seeds.
 Table prediction_summary(const std::vector<PredictionFolder>& predictions);
 /// One prediction in full.

@@ -27,9 +27,10 @@ Table stage_table(const fit::Calibration& calibration) {
 
 Table residual_table(const fit::Calibration& calibration) {
   Table table;
-  table.caption = "Misfit of the coupled fit per test: model minus DEM";
+  table.caption = "Misfit of the coupled fits per test: model minus DEM";
   table.source = "calibration.json";
-  table.columns = {words(plain("test")),
+  table.columns = {words(plain("stage")),
+                   words(plain("test")),
                    words(plain("quantity")),
                    words(plain("fitted")),
                    quantity(plain("rows")),
@@ -39,12 +40,12 @@ Table residual_table(const fit::Calibration& calibration) {
                    quantity(plain("RMS/max|DEM| [%]")),
                    quantity(plain("bias/max|DEM| [%]"))};
   for (const fit::Stage& stage : calibration.stages) {
-    if (stage.name != "evolution") continue;
+    if (stage.name != "evolution" && stage.name != "memory") continue;
     for (const fit::TestResidual& r : stage.tests) {
-      table.rows.push_back({plain(r.test), plain(r.quantity), plain(r.in_cost ? "yes" : "shown only"),
-                            plain(std::to_string(r.rows)), plain(std::to_string(r.rows_excluded)), number(r.rms, 3),
-                            number(r.bias, 3), plain(fixed(percent(r.rms, r.max_abs_data), 2)),
-                            plain(fixed(percent(r.bias, r.max_abs_data), 2))});
+      table.rows.push_back(
+          {plain(stage.name), plain(r.test), plain(r.quantity), plain(r.in_cost ? "yes" : "shown only"),
+           plain(std::to_string(r.rows)), plain(std::to_string(r.rows_excluded)), number(r.rms, 3), number(r.bias, 3),
+           plain(fixed(percent(r.rms, r.max_abs_data), 2)), plain(fixed(percent(r.bias, r.max_abs_data), 2))});
     }
   }
   return table;

@@ -176,7 +176,7 @@ inline app::report::ReportInput report_scene() {
       input.tests.push_back(*test);
       input.costs.push_back({120000, 2.3e-8, 12.5});
     }
-    evolution.tests.push_back({unloading.name, "P_star", true, 190, 11, 0.0006, 0.0001, 0.1});
+    evolution.tests.push_back({unloading.name, "P_star", true, 190, 11, 0, 0.0006, 0.0001, 0.1});
     for (const double nu : {0.68, 0.70, 0.72, 0.74, 0.78, 0.80}) {
       const std::string density = std::to_string(nu).substr(0, 5);
       TestRecord shear = make_test("D2-" + density + tag, seed, nu, {segment_of(Mode::D2, ExtentKind::eps_dev, 0.25)});
@@ -187,9 +187,9 @@ inline app::report::ReportInput report_scene() {
       for (TestRecord* test : {&shear, &back}) {
         fill_rows(*test, p, 120, generator);
         const double gap = -0.3 * std::exp(-(nu - 0.68) / 0.02);
-        evolution.tests.push_back({test->name, "P_star", false, 120, 0, std::abs(gap) * 0.01, gap * 0.01, 0.01});
-        evolution.tests.push_back({test->name, "s_par", true, 120, 0, 0.012, 0.002 * wobble, 0.17});
-        evolution.tests.push_back({test->name, "F_par", true, 120, 0, 0.006, -0.002 * wobble, 0.12});
+        evolution.tests.push_back({test->name, "P_star", false, 120, 0, 0, std::abs(gap) * 0.01, gap * 0.01, 0.01});
+        evolution.tests.push_back({test->name, "s_par", true, 120, 0, 0, 0.012, 0.002 * wobble, 0.17});
+        evolution.tests.push_back({test->name, "F_par", true, 120, 0, 0, 0.006, -0.002 * wobble, 0.12});
         input.tests.push_back(*test);
         input.costs.push_back({90000, 2.3e-8, 8.25});
       }

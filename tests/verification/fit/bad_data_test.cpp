@@ -127,6 +127,33 @@ TEST(BadData, F7OutliersAreFlaggedByTestAndColumn) {
   }
 }
 
+// A tenth of the rows of every shear test off by 0.2 to one side: squares follow them, Huber's loss hardly.
+TEST(BadData, F7HuberLossIsHardlyMovedByOutliers) {
+  std::mt19937_64 engine(5);
+  const Throw& thrown = throws()[3];
+  ASSERT_EQ(std::string(thrown.column), "s_par");
+  std::vector<TestRecord> tests = records();
+  for (TestRecord& test : tests) {
+    if (is_isotropic_unloading(test)) continue;
+    for (std::size_t i = 1; i < test.rows.size(); ++i) {
+      if (engine() % 10 == 0) thrown.by(test.rows[i], 0.2);
+    }
+  }
+  const auto s_max = [](const std::vector<TestRecord>& data, Loss loss) {
+    CalibrationOptions options;
+    options.loss = loss;
+    const Calibration c = calibrate(data, options, {});
+    int lightened = 0;
+    for (const TestResidual& t : c.stages.back().tests) lightened += t.rows_lightened;
+    EXPECT_EQ(lightened > 0, loss == Loss::huber);
+    return c.parameters.stress_ratio_max.value(0.70, c.parameters.shear_nu_c);
+  };
+  const double clean = s_max(records(), Loss::squares);
+  const double squares = std::abs(s_max(tests, Loss::squares) - clean);
+  EXPECT_GT(squares, 0.05 * clean);
+  figure("F7.outliers_huber_over_squares", std::abs(s_max(tests, Loss::huber) - clean) / squares, 0.1);
+}
+
 TEST(BadData, F7RunsCountedTwiceAreRefused) {
   int silent = 0;
   const auto expect_refusal = [&](const std::vector<TestRecord>& tests, const std::string& name) {

@@ -1,0 +1,60 @@
+#include "fit/robust.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace grainlaw::fit {
+namespace {
+
+ResidualBlock values(const std::vector<double>& y) {
+  ResidualBlock block;
+  block.test = "values";
+  block.weight = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(y.size()));
+  block.channels = {{"y", 0, static_cast<int>(y.size()), 0, 10}};
+  block.evaluate = [y](const double* x, double* r, double* J) {
+    for (std::size_t i = 0; i < y.size(); ++i) r[i] = *x - y[i];
+    if (J != nullptr) std::fill_n(J, y.size(), 1.0);
+    return true;
+  };
+  return block;
+}
+
+Solution huber(const std::vector<double>& y) {
+  return solve_huber({{"x", 0, -100, 100, 1}}, {values(y)}, 1, "huber", {});
+}
+
+// Seven values of scatter s = 1.4826 median|y - x| and one far away: sum of psi = 0, psi(u) = u up to c s, then c s.
+TEST(Robust, AnOutlierPullsByNoMoreThanItsShare) {
+  const std::vector<double> y{-3, -2, -1, 0, 1, 2, 3};
+  for (const double far : {50.0, 5000.0}) {
+    std::vector<double> with = y;
+    with.push_back(far);
+    const Solution s = huber(with);
+    EXPECT_TRUE(s.converged) << s.termination;
+    std::vector<double> off;
+    for (const double v : with) off.push_back(std::abs(s.x(0) - v));
+    std::sort(off.begin(), off.end());
+    const double reach = 1.345 * 1.4826 * off[4];
+    double pull = 0;
+    for (const double v : with) pull += std::clamp(s.x(0) - v, -reach, reach);
+    EXPECT_NEAR(pull, 0, 0.05 * reach) << far;
+    EXPECT_LT(s.x(0), 1) << "their mean is " << far / 8;
+    EXPECT_NEAR(s.weight(7), std::sqrt(reach / (far - s.x(0))), 2e-3);
+  }
+}
+
+TEST(Robust, WithoutOutliersItIsTheMean) {
+  const Solution s = huber({1, 2, 3, 4, 1, 2, 3, 4});
+  EXPECT_NEAR(s.x(0), 2.5, 1e-7);  // about the square root of machine precision: the cost feels no less
+  EXPECT_EQ(s.weight.minCoeff(), 1);
+}
+
+TEST(Robust, ExactDataKeepTheirWeights) {
+  const Solution s = huber({2, 2, 2, 2});
+  EXPECT_NEAR(s.x(0), 2, 1e-9);
+  EXPECT_EQ(s.weight.minCoeff(), 1);
+}
+
+}  // namespace
+}  // namespace grainlaw::fit
