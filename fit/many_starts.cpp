@@ -9,6 +9,7 @@ namespace grainlaw::fit {
 namespace {
 
 constexpr double kSameCost = 1e-6;  // relative difference of two solutions that are one
+constexpr double kExact = 1e-16;    // of the cost at the start: a solution that meets the data exactly
 constexpr double kDensityRange = 0.005;
 
 }  // namespace
@@ -32,16 +33,18 @@ std::vector<FreeParameter> start_number(const std::vector<FreeParameter>& from, 
 }
 
 Solution best_of(std::vector<Solution> solutions, StartSearch& search) {
+  double rounding = 0;
+  for (const Solution& solution : solutions) rounding = std::max(rounding, kExact * solution.initial_cost);
+  const auto within = [&](double cost, double least) { return cost <= least * (1 + kSameCost) + rounding; };
   std::size_t best = 0;
   for (std::size_t i = 1; i < solutions.size(); ++i) {
     const Solution &a = solutions[i], &b = solutions[best];
-    if (a.converged && (!b.converged || a.final_cost < b.final_cost * (1 - kSameCost))) best = i;
+    if (a.converged && (!b.converged || !within(b.final_cost, a.final_cost))) best = i;
   }
-  const double least = solutions[best].final_cost;
   search = {static_cast<int>(solutions.size()), 0, std::nan("")};
   for (const Solution& solution : solutions) {
     if (!solution.converged) continue;
-    if (solution.final_cost <= least * (1 + kSameCost) + 1e-300)
+    if (within(solution.final_cost, solutions[best].final_cost))
       ++search.at_minimum;
     else if (!(solution.final_cost >= search.next_cost))
       search.next_cost = solution.final_cost;

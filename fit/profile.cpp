@@ -14,7 +14,7 @@ namespace grainlaw::fit {
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
-constexpr int kExpansions = 8, kRefinements = 3;
+constexpr int kExpansions = 8, kRefinements = 14;
 constexpr SolverEffort kRefit{2, 4};  // from a neighbour's solution
 
 /// The blocks as functions of all parameters but `k`, which is held at `value`.
@@ -128,7 +128,7 @@ double end_of(ProfiledCost cost, const FreeParameter& p, double best, double ste
   if (std::isnan(outside)) return kUndefined;
   const auto between = [&] { return inside + (outside - inside) * (1 - at_inside) / (at_outside - at_inside); };
   for (int i = 0; i < kRefinements && at_outside - at_inside > 0.05; ++i) {
-    const double middle = between(), s = distance(middle);
+    const double middle = i % 2 == 0 ? between() : (inside + outside) / 2, s = distance(middle);
     if (std::isnan(s)) break;
     (s < 1 ? inside : outside) = middle;
     (s < 1 ? at_inside : at_outside) = s;
