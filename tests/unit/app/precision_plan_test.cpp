@@ -26,9 +26,9 @@ fit::Calibration calibrated(int packings, double error, double bias) {
   fit::Stage stage;
   stage.name = "evolution";
   for (const char* test : {"D2-0.70-s1", "D2-0.70-s2", "D2-0.78-s1", "D2-0.78-s2"}) {
-    stage.tests.push_back({test, "s_par", true, 100, 0, 0.1, bias * 0.2, 0.2});
+    stage.tests.push_back({test, "s_par", true, 100, 0, 0, 0.1, bias * 0.2, 0.2});
     // of opposite sign in the packings: scatter, not discrepancy
-    stage.tests.push_back({test, "F_par", true, 100, 0, 0.1, std::string(test).ends_with("1") ? 0.05 : -0.05, 0.1});
+    stage.tests.push_back({test, "F_par", true, 100, 0, 0, 0.1, std::string(test).ends_with("1") ? 0.05 : -0.05, 0.1});
   }
   c.stages.push_back(stage);
   return c;
