@@ -14,6 +14,7 @@ namespace grainlaw::fit {
 namespace {
 
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAtTheEnd = 0.02;  // relative distance from which the rest is a straight line
 constexpr int kExpansions = 8, kRefinements = 14;
 constexpr SolverEffort kRefit{2, 4};  // from a neighbour's solution
 
@@ -130,6 +131,7 @@ double end_of(ProfiledCost cost, const FreeParameter& p, double best, double ste
   for (int i = 0; i < kRefinements && at_outside - at_inside > 0.05; ++i) {
     const double middle = i % 2 == 0 ? between() : (inside + outside) / 2, s = distance(middle);
     if (std::isnan(s)) break;
+    if (std::abs(s - 1) < kAtTheEnd) return middle + (middle - best) * (1 - s) / s;
     (s < 1 ? inside : outside) = middle;
     (s < 1 ? at_inside : at_outside) = s;
   }
