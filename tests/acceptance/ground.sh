@@ -46,7 +46,7 @@ mutants() {
   caught=$(awk '$1 == "mutants.caught" { print $2 }' "$out/mutants.txt")
   sown=$(awk '$1 == "mutants.caught" { print $4 }' "$out/mutants.txt")
   figure mutants.sown "${sown:-missing}" ">=40"
-  figure mutants.caught_percent "$(awk -v c="${caught:-x}" -v s="${sown:-0}" 'BEGIN { print s > 0 ? 100 * c / s : "missing" }')" ">=95"
+  figure mutants.caught_percent "$(awk -v c="${caught:-x}" -v s="${sown:-0}" 'BEGIN { print (s > 0 ? 100 * c / s : "missing") }')" ">=95"
 }
 
 coverage() {
