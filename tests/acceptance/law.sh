@@ -7,7 +7,7 @@
 #   PATH.RUNG.QUANTITY.coverage.mean, .single   share of the DEM rows within the band of the mean curve, of a single run
 #   PATH.memory.K.s, .F                strain to the sign change in segment K, law over DEM minus 1
 #   PATH.memory.K.dip                  least P* of segment K over that at its corner, law minus DEM
-#   dilatancy.RUNG.NU                  rise of P* in D2 at constant volume, law minus DEM
+#   dilatancy.RUNG.NU                  rise of P* in D2 at constant volume, law (from its own start) minus DEM
 # Bounds are the goals of the memory rung; the other rungs are stated.
 set -euo pipefail
 
@@ -66,18 +66,15 @@ rise() { # csv...
 }
 
 dilatancy() {
-  local nu rung dem folder
-  folder=$(mktemp -d)
+  local nu rung folder dem
   for nu in 0.68 0.70 0.74 0.80; do
-    printf '{"initial": {"nu": %s}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.26}}]}' "$nu" >"$folder/path.json"
-    "$bin/grainlaw" predict "$law/parameters.json" "$folder/path.json" -o "$folder/$nu" --quiet >/dev/null
-    dem=$(rise "$law"/dataset/D2-$nu-s*.csv)
+    folder=$law/predictions/d2-$nu
+    dem=$(rise "$folder"/dem/*.csv)
     figure "dilatancy.DEM.$nu" "$dem" stated
     for rung in evolution memory; do
-      figure "dilatancy.$rung.$nu" "$(awk -v a="$(rise "$folder/$nu/$rung-law.csv")" -v b="$dem" 'BEGIN { print a - b }')" stated
+      figure "dilatancy.$rung.$nu" "$(awk -v a="$(rise "$folder/$rung-law.csv")" -v b="$dem" 'BEGIN { print a - b }')" stated
     done
   done
-  rm -rf "$folder"
 }
 
 integrators() {
