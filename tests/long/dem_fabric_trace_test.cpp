@@ -11,7 +11,7 @@ namespace {
 
 TEST(FabricTraceLong, D13TraceFollowsCoordinationAndSizes) {
   for (const double nu : {0.70, 0.75, 0.82}) {
-    testing::figure(fmt::format("D13.statistical.N9261.nu{:.2f}", nu), scene::fabric_error(9261, nu), 0.03);
+    testing::expect_figure(fmt::format("D13.statistical.N9261.nu{:.2f}", nu), scene::fabric_error(9261, nu), 0.03);
   }
 }
 

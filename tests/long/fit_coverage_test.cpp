@@ -22,7 +22,7 @@ TEST_P(Coverage, F2F3CompleteCalibration) {
   const std::string name = (white ? "F2." : "F3.") + study.name();
   testing::coverage_table(name, coverage);
   const double least = white ? 0.93 : 0.90, most = white ? 0.97 : 1;
-  testing::coverage_figures(name, coverage, least - chance(least, study.sets), most + chance(most, study.sets));
+  testing::expect_coverage(name, coverage, least - chance(least, study.sets), most + chance(most, study.sets));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -13,8 +13,8 @@ class FitRecovery : public ::testing::TestWithParam<int> {};
 TEST_P(FitRecovery, F1EvolutionInFull) {
   const testing::RecoveryCount count = testing::recover_evolution(250, 13 + static_cast<std::uint64_t>(GetParam()));
   const std::string name = "F1.evolution.quarter_" + std::to_string(GetParam());
-  testing::figure(name + ".missed", 1 - static_cast<double>(count.recovered) / count.starts, 0.01);
-  testing::figure(name + ".silent", count.silent(), 0);
+  testing::expect_figure(name + ".missed", 1 - static_cast<double>(count.recovered) / count.starts, 0.01);
+  testing::expect_figure(name + ".silent", count.silent(), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Quarter, FitRecovery, ::testing::Range(1, 5));

@@ -14,7 +14,7 @@ namespace grainlaw::testing {
 
 /// Prints and records `value`, and fails the running test unless it is finite and at most `bound`.
 /// `name` has no blanks, e.g. "D1.max".
-inline void figure(const std::string& name, double value, double bound) {
+inline void expect_figure(const std::string& name, double value, double bound) {
   fmt::print("figure {} {:.3e} {:.3e}\n", name, value, bound);
   std::fflush(stdout);
   ::testing::Test::RecordProperty(name, fmt::format("{:.17g} <= {:.17g}", value, bound));

@@ -240,7 +240,7 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
 }
 
 /// A figure for the parameter that is covered least and for the one that is covered most.
-inline void coverage_figures(const std::string& name, const Coverage& coverage, double least, double most) {
+inline void expect_coverage(const std::string& name, const Coverage& coverage, double least, double most) {
   double lowest = 1, highest = 0;
   for (const auto& [parameter, count] : coverage.counts()) {
     EXPECT_GE(count.coverage(), least) << name << " " << parameter << ", intervals " << count.intervals;
@@ -248,8 +248,8 @@ inline void coverage_figures(const std::string& name, const Coverage& coverage, 
     lowest = std::min(lowest, count.coverage());
     highest = std::max(highest, count.coverage());
   }
-  figure(name + ".not_covered_at_most", 1 - lowest, 1 - least);
-  figure(name + ".covered_at_most", highest, most);
+  expect_figure(name + ".not_covered_at_most", 1 - lowest, 1 - least);
+  expect_figure(name + ".covered_at_most", highest, most);
 }
 
 /// One row for each parameter.

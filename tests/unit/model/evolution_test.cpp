@@ -6,17 +6,12 @@
 #include <cmath>
 
 #include "model/path.hpp"
+#include "tests/support/law_parameters.hpp"
 
 namespace grainlaw {
 namespace {
 
 constexpr Coupling kCouplings[] = {Coupling::energy, Coupling::single};
-
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
 
 LawState<double> some_state() {
   LawState<double> y{0.021, {}, {}};
@@ -56,7 +51,7 @@ TEST(Evolution, DirectionIsCompressionPositive) {
 
 TEST(Evolution, TensorFormIsTheInvariantFormOnCoaxialPaths) {
   // equations.md 5.2: dP = B dx + A1 S sg de; dsig = A2 dx + DG S sg de; dF = beta_F (sg F_max - F) de; S = 1 - sg s/s_max
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   for (const Coupling coupling : kCouplings) {
     for (const double sg : {1.0, -1.0}) {
       for (const double dx : {-0.8, 0.0, 1.3}) {
@@ -84,7 +79,7 @@ TEST(Evolution, TensorFormIsTheInvariantFormOnCoaxialPaths) {
 
 TEST(Evolution, WithoutCouplingItIsEquations17And18) {
   // ds/de = beta_s (s_max - s), dF/de = beta_F (F_max - F), dP = 0 on monotone shear with A = 0
-  LawParameters<double> p = parameters();
+  LawParameters<double> p = testing::coupled_parameters();
   p.anisotropy.a0 = 0;
   const LawDirection shear = law_direction(direction_of(Mode::D2));
   const double nu = 0.70, P = 0.016, s = 0.1, F = 0.08;
@@ -97,7 +92,7 @@ TEST(Evolution, WithoutCouplingItIsEquations17And18) {
 }
 
 TEST(Evolution, IsotropicRateIsTheBulkModulus) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const LawState<double> y = some_state();
   const LawState<double> r = rate_along(p, Coupling::energy, y, 0.72, direction_of(Mode::ISO));
   EXPECT_EQ(r.P, 3 * p.isotropic.B_star(0.72));
@@ -108,7 +103,7 @@ TEST(Evolution, IsotropicRateIsTheBulkModulus) {
 TEST(Evolution, EnergyCouplingHasEqualMixedDerivatives) {
   // Work per initial volume: dW = (V/V0)(P dx + (2/3) sigma_dev de), V/V0 = exp(-x). At the start of shear (S = 1) it is
   // elastic, and dP/de = A1 must be exp(x) d/dx[exp(-x) (2/3) sigma_dev] = (2/3)(A2 - sigma_dev).
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   for (const double nu : {0.68, 0.74, 0.82}) {
     for (const double sigma : {0.0, 5e-4, -1e-3}) {
       for (const double F : {0.02, 0.1, -0.05}) {
@@ -128,7 +123,7 @@ TEST(Evolution, EnergyCouplingHasEqualMixedDerivatives) {
 
 TEST(Evolution, SingleCouplingIsThePrintedOne) {
   // dP = A de and dsigma = A deps_v with deps_v = dx/3: A1 = A, A2 = A/3
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const Deviator<double> N = law_direction(direction_of(Mode::D2)).N;
   const LawState<double> y = coaxial(0.02, 0, 0.09, N);
   EXPECT_NEAR(evolution_rate(p, Coupling::single, y, 0.7, {0, 1, N}).P, 0.137 * 0.09, 1e-16);
@@ -137,7 +132,7 @@ TEST(Evolution, SingleCouplingIsThePrintedOne) {
 }
 
 TEST(Evolution, RateTurnsWithTheExperiment) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const Eigen::Matrix3d R = Eigen::AngleAxisd(2.1, Eigen::Vector3d(-0.4, 1, 0.7).normalized()).toRotationMatrix();
   const auto turn = [&](const Deviator<double>& q) {
     return deviator<double>(Eigen::Matrix3d(R * tensor_of(q) * R.transpose()));
@@ -156,7 +151,7 @@ TEST(Evolution, RateTurnsWithTheExperiment) {
 
 TEST(Evolution, ReversingShearReversesTheOddParts) {
   // (sigma, F, N) -> -(sigma, F, N) leaves dP and turns dsigma', dF'.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const LawState<double> y = some_state(), mirrored{y.P, -y.sigma, -y.F};
   const LawDirection d = law_direction(some_rate()), back{d.dx, d.de, -d.N};
   for (const Coupling coupling : kCouplings) {
@@ -169,7 +164,7 @@ TEST(Evolution, ReversingShearReversesTheOddParts) {
 }
 
 TEST(Evolution, RateScalesWithTheSpeedOfTheParameter) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const LawState<double> y = some_state();
   StrainRate fast = some_rate();
   fast.tensor *= 7;
@@ -182,7 +177,7 @@ TEST(Evolution, RateScalesWithTheSpeedOfTheParameter) {
 }
 
 TEST(Evolution, OtherScalarGivesTheSameRate) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const LawState<double> y = some_state();
   const LawState<long double> wide{y.P, y.sigma.cast<long double>(), y.F.cast<long double>()};
   for (const Coupling coupling : kCouplings) {

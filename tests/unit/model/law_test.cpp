@@ -6,17 +6,12 @@
 
 #include "model/error.hpp"
 #include "model/path.hpp"
+#include "tests/support/law_parameters.hpp"
 
 namespace grainlaw {
 namespace {
 
 constexpr Coupling kCouplings[] = {Coupling::energy, Coupling::single};
-
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
 
 LawState<double> some_state() {
   LawState<double> y{0.021, {}, {}, {}};
@@ -78,7 +73,7 @@ TEST(Law, SpinAloneTurnsTheState) {
   const Eigen::Matrix3d forth = Eigen::AngleAxisd(h * w.norm(), w.normalized()).toRotationMatrix();
   const LawState<double> y = some_state(), after = turned(y, forth), before = turned(y, forth.transpose());
   for (const Rung rung : kRungs) {
-    const LawState<double> rate = law_rate(parameters(), rung, Coupling::energy, y, 0.72, direction);
+    const LawState<double> rate = law_rate(testing::coupled_parameters(), rung, Coupling::energy, y, 0.72, direction);
     EXPECT_EQ(rate.P, 0);
     EXPECT_LE((rate.sigma - (after.sigma - before.sigma) / (2 * h)).norm(), 1e-11);
     EXPECT_LE((rate.F - (after.F - before.F) / (2 * h)).norm(), 1e-10);
@@ -92,8 +87,8 @@ TEST(Law, RateOfATurnedExperimentIsTheTurnedRate) {
   for (const Rung rung : kRungs) {
     for (const Coupling coupling : kCouplings) {
       const LawState<double> y = some_state();
-      const LawState<double> a = law_rate(parameters(), rung, coupling, y, 0.7, law_direction(L));
-      const LawState<double> b = law_rate(parameters(), rung, coupling, turned(y, R), 0.7,
+      const LawState<double> a = law_rate(testing::coupled_parameters(), rung, coupling, y, 0.7, law_direction(L));
+      const LawState<double> b = law_rate(testing::coupled_parameters(), rung, coupling, turned(y, R), 0.7,
                                           law_direction(Eigen::Matrix3d(R * L * R.transpose())));
       expect_equal(b, turned(a, R), 1e-12);
     }
@@ -108,17 +103,18 @@ TEST(Law, RateDoesNotSeeAnObserverWhoTurns) {
   Omega << 0, -omega(2), omega(1), omega(2), 0, -omega(0), -omega(1), omega(0), 0;
   const LawState<double> y = some_state();
   for (const Rung rung : kRungs) {
-    LawState<double> still = law_rate(parameters(), rung, Coupling::energy, y, 0.7, law_direction(L));
+    LawState<double> still = law_rate(testing::coupled_parameters(), rung, Coupling::energy, y, 0.7, law_direction(L));
     still.sigma += corotation(omega, y.sigma);
     still.F += corotation(omega, y.F);
     still.s_r += corotation(omega, y.s_r);
-    expect_equal(law_rate(parameters(), rung, Coupling::energy, y, 0.7, law_direction(Eigen::Matrix3d(L + Omega))),
+    expect_equal(law_rate(testing::coupled_parameters(), rung, Coupling::energy, y, 0.7,
+                          law_direction(Eigen::Matrix3d(L + Omega))),
                  still, 1e-13);
   }
 }
 
 TEST(Law, ReducedIsEvolutionWithoutCouplingAtConstantVolume) {
-  LawParameters<double> p = parameters();
+  LawParameters<double> p = testing::coupled_parameters();
   p.anisotropy.a0 = 0;
   const LawDirection shear = law_direction(direction_of(Mode::D2));
   const LawState<double> y = some_state();
@@ -128,10 +124,10 @@ TEST(Law, ReducedIsEvolutionWithoutCouplingAtConstantVolume) {
 
 TEST(Law, ReducedKeepsTheStressRatioInIsotropicStrain) {
   // equations.md 5.5: its rates assume nothing of P, d(sigma'/P) = 0 without shear.
-  const LawState<double> y = some_state(), r = law_rate(parameters(), Rung::reduced, Coupling::energy, y, 0.7,
-                                                        law_direction(direction_of(Mode::ISO)));
+  const LawState<double> y = some_state(), r = law_rate(testing::coupled_parameters(), Rung::reduced, Coupling::energy,
+                                                        y, 0.7, law_direction(direction_of(Mode::ISO)));
   EXPECT_LE((r.sigma / y.P - y.sigma * (r.P / (y.P * y.P))).norm(), 1e-15);
-  EXPECT_EQ(r.P, 3 * parameters().isotropic.B_star(0.7));
+  EXPECT_EQ(r.P, 3 * testing::coupled_parameters().isotropic.B_star(0.7));
 }
 
 TEST(Law, OnlyMemoryTurnsCorners) {

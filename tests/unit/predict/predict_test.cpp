@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "model/error.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw::predict {
@@ -20,15 +21,9 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Rung kModels[] = {Rung::reduced, Rung::evolution};
 
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
-
 Prediction run(Rung model, const std::vector<StraightSegment>& path, const std::vector<OutputPoint>& points,
                const ValidRange& range = {}, const Tolerances& tolerances = {}) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   return predict(model, p, Coupling::energy, path, state_from_law(p, path.front().nu_start), points, tolerances, range,
                  {});
 }
@@ -38,7 +33,7 @@ bool equal(const LawState<double>& a, const LawState<double>& b) {
 }
 
 TEST(Start, FromTheLaw) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const LawState<double> state = state_from_law(p, 0.70);
   EXPECT_EQ(state.P, p.isotropic.P_star(0.70));
   EXPECT_TRUE(state.sigma.isZero() && state.F.isZero());
@@ -72,7 +67,7 @@ TEST(Start, FromAMeasuredRow) {
 }
 
 TEST(Predict, O10StartIsReturnedExactly) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg(Mode::UNI, 0.1)});
   LawState<double> start = state_from_law(p, 0.70);
   start.sigma << 1e-3, 2e-4, 0, 1e-5, 0;
@@ -121,7 +116,7 @@ TEST(Predict, O10PointsOffThePathAreRefused) {
 }
 
 TEST(Predict, RefusesWhatCannotBeIntegrated) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg(Mode::UNI, 0.1)});
   const LawState<double> good = state_from_law(p, 0.70);
   const auto attempt = [&](const std::vector<StraightSegment>& segments, const LawState<double>& start,
@@ -151,7 +146,7 @@ TEST(Predict, RefusesWhatCannotBeIntegrated) {
 
 TEST(Predict, ParametersThatAreNoNumbersGiveNoRows) {
   const auto path = path_from(0.70, {leg(Mode::UNI, 0.1)});
-  LawParameters<double> p = parameters();
+  LawParameters<double> p = testing::coupled_parameters();
   const LawState<double> start = state_from_law(p, 0.70);
   p.stress_rate.Q_c = kNaN;
   for (const Rung model : kModels) {
@@ -160,7 +155,7 @@ TEST(Predict, ParametersThatAreNoNumbersGiveNoRows) {
 }
 
 TEST(Predict, FailureNamesSegmentStrainAndReason) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg(Mode::ISO, 0.01), leg(Mode::UNI, 0.1)});
   try {
     predict(Rung::evolution, p, Coupling::energy, path, state_from_law(p, 0.70), {{1, 0.1}},
@@ -176,7 +171,7 @@ TEST(Predict, FailureNamesSegmentStrainAndReason) {
 }
 
 TEST(Predict, StopsWhenAsked) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg(Mode::UNI, 0.1)});
   std::stop_source source;
   source.request_stop();
@@ -223,7 +218,7 @@ TEST(Predict, O11WorkDoesNotGrowWithTheNumberOfOutputs) {
 }
 
 TEST(Predict, O11LargeStrainSaturates) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.74, {leg(Mode::D2, 10)});
   const auto row =
       predict(Rung::evolution, p, Coupling::single, path, state_from_law(p, 0.74), {{0, path[0].length}}, {}, {}, {})
@@ -264,7 +259,7 @@ TEST(Predict, WarnsOncePerKindOutsideTheCalibratedRange) {
 }
 
 TEST(Reduced, PressureIsThatOfTheDensity) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg(Mode::D2, 0.1), leg_to(Mode::UNI, 0.78)});
   LawState<double> start = state_from_law(p, 0.70);
   start.P *= 1.3;
@@ -285,7 +280,7 @@ TEST(Reduced, IsotropicSegmentsKeepTheRatios) {
 
 TEST(Reduced, OffAxisPartsDecay) {
   // Shear along another axis: what was built up along the first decays with exp(-beta_s e), exp(-beta_F e).
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   auto second = leg(Mode::D2, 0.05);
   second.direction = StrainRate{};
   second.direction.tensor(0, 1) = second.direction.tensor(1, 0) = -0.5;  // orthogonal to any diagonal direction
@@ -301,7 +296,7 @@ TEST(Reduced, OffAxisPartsDecay) {
 }
 
 TEST(Reduced, UnjamsAndJamsAgainAtTheJammingDensity) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg_to(Mode::UNI, 0.60, true), leg_to(Mode::UNI, 0.70)});
   const Prediction prediction = run(Rung::reduced, path, uniform_points(path, 100));
   EXPECT_TRUE(prediction.unjammed);

@@ -16,7 +16,7 @@
 namespace grainlaw::dem {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 /// F(u), u in [0, 1]: out and back, F(0) = F(1) = 1.
 Eigen::Matrix3d deformation(double u) {
@@ -64,7 +64,7 @@ TEST(AffineMotion, D10ThereAndBackInAMillionSteps) {
   EXPECT_GT(sim.rebuilds, 1U) << "the deformation must have invalidated the list";
   EXPECT_EQ(sim.state.ledger.W_box, 0);
   EXPECT_EQ(kinetic_energy(p), 0);
-  figure("D10.there_and_back", worst, 1e-13);
+  expect_figure("D10.there_and_back", worst, 1e-13);
 }
 
 /// Error of the sphere's position after 3e-4 s in `steps` steps of uniform stretching [m].

@@ -18,7 +18,7 @@ namespace {
 
 using scene::Draw;
 using scene::Family;
-using testing::figure;
+using testing::expect_figure;
 
 Observation seen_at_rest(const State& state) {
   return observe(scene::start(state), scene::at_rest(state), Deviator<double>::Zero());
@@ -52,19 +52,19 @@ TEST_P(ContactNumbers, D13D22EqualThePlainCount) {
       EXPECT_TRUE(std::isnan(seen.C_star));
     }
   }
-  figure(scene::figure_name("D13.trace", GetParam()), trace_error, 1e-13);
-  figure(scene::figure_name("D22.numbers", GetParam()), number_error, 1e-14);
+  expect_figure(scene::figure_name("D13.trace", GetParam()), trace_error, 1e-13);
+  expect_figure(scene::figure_name("D22.numbers", GetParam()), number_error, 1e-14);
 }
 
 INSTANTIATE_TEST_SUITE_P(D20, ContactNumbers, ::testing::ValuesIn(scene::families()), scene::name_of_family);
 
 TEST(FabricOfManyContacts, D13TraceFollowsCoordinationAndSizes) {
-  figure("D13.formula_of_g3", std::abs(scene::g3_of_uniform_sizes(3) - 1.2250), 1e-4);
+  expect_figure("D13.formula_of_g3", std::abs(scene::g3_of_uniform_sizes(3) - 1.2250), 1e-4);
   EXPECT_NEAR(scene::g3_of_uniform_sizes(1 + 1e-9), 1, 1e-8);
   EXPECT_NEAR(scene::g3_of_uniform_sizes(2), 1.110, 5e-4);
   EXPECT_NEAR(scene::g3_of_uniform_sizes(8), 1.448, 5e-4);
   for (const double nu : {0.75, 0.82}) {
-    figure(fmt::format("D13.statistical.N1000.nu{:.2f}", nu), scene::fabric_error(1000, nu), 0.03);
+    expect_figure(fmt::format("D13.statistical.N1000.nu{:.2f}", nu), scene::fabric_error(1000, nu), 0.03);
   }
 }
 
@@ -138,7 +138,7 @@ TEST(ContactNumbersOfFew, D21NoContactsNoStressNoRatios) {
       EXPECT_NEAR(seen.nu, static_cast<double>(n) * 4.0 / 3.0 * std::numbers::pi / 8000, 1e-15);
     }
   }
-  figure("D21.wrong_quantities", wrong, 0);
+  expect_figure("D21.wrong_quantities", wrong, 0);
 }
 
 // A whole element test of 1, 2 and 3 spheres; none can be tested without a sphere.
@@ -159,7 +159,7 @@ TEST(ContactNumbersOfFew, D21ElementTestsOfFewSpheres) {
     }
   }
   EXPECT_EQ(rows, 33U);
-  figure("D21.wrong_quantities_in_element_tests", wrong, 0);
+  expect_figure("D21.wrong_quantities_in_element_tests", wrong, 0);
   EXPECT_THROW(run_element_test(spheres_apart(0, 0), {}, options, {}), InvalidInput);
 }
 

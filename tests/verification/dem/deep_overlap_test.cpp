@@ -19,7 +19,7 @@ namespace grainlaw::dem {
 namespace {
 
 using scene::Draw;
-using testing::figure;
+using testing::expect_figure;
 
 constexpr std::int64_t kBig = 404, kSmall = 717;
 
@@ -81,8 +81,8 @@ TEST(DeepOverlap, D17Repels) {
       EXPECT_LE((scene::force_on(scene::start(pair), 0) - expected).norm(), 1e-12 * expected.norm());
     }
   }
-  figure("D17.force_error", force_error, 1e-12);
-  figure("D17.sum_of_forces", total, 1e-12);
+  expect_figure("D17.force_error", force_error, 1e-12);
+  expect_figure("D17.sum_of_forces", total, 1e-12);
 }
 
 TEST(DeepOverlap, D17ElementTestsRefuseAPairThatNothingHolds) {
@@ -113,8 +113,8 @@ TEST(DeepOverlap, D17ElementTestsRefuseAPairThatNothingHolds) {
     }
   }
   EXPECT_GT(refused, 0);
-  figure("D17.neither_refused_nor_balanced", neither, 0);
-  figure("D17.balance", balance, 1e-3);
+  expect_figure("D17.neither_refused_nor_balanced", neither, 0);
+  expect_figure("D17.balance", balance, 1e-3);
 }
 
 // Caught between a big one and its image the small sphere is in equilibrium: such packings run.
@@ -165,7 +165,7 @@ TEST(DeepOverlap, D18CoincidingSpheresAreNamed) {
                        : 1;
     }
   }
-  figure("D18.not_named", not_named, 0);
+  expect_figure("D18.not_named", not_named, 0);
 }
 
 // From where the square of the distance is a number on, the direction is right.
@@ -186,7 +186,7 @@ TEST(DeepOverlap, D18TinyDistancesHaveADirection) {
       EXPECT_GT(sim.state.packing.size() > 1 ? scene::velocity(sim.state.packing, 1)(axis) : 0, 0);
     }
   }
-  figure("D18.direction_error", error, 1e-12);
+  expect_figure("D18.direction_error", error, 1e-12);
 }
 
 }  // namespace

@@ -20,16 +20,18 @@ namespace {
 
 using scene::EnergyAccount;
 using scene::Family;
-using testing::figure;
+using testing::expect_figure;
 
 TEST(EnergyBalance, D9UniaxialCompressionOfJammedPackings) {
-  figure("D9.four_packings", scene::compress_several(300, 0.75, 4, 50).residual_over_lost(), scene::energy_line());
+  expect_figure("D9.four_packings", scene::compress_several(300, 0.75, 4, 50).residual_over_lost(),
+                scene::energy_line());
 }
 
 TEST(EnergyBalance, D9WallDriven) {
   DriveOptions options;
   options.transport = Transport::wall;
-  figure("D9.wall", scene::compress_several(300, 0.75, 2, 50, options).residual_over_lost(), scene::energy_line());
+  expect_figure("D9.wall", scene::compress_several(300, 0.75, 2, 50, options).residual_over_lost(),
+                scene::energy_line());
 }
 
 /// Shaken packings, compressed within 20 us: short enough for every step size to follow the same path, with thousands
@@ -58,7 +60,7 @@ TEST(EnergyBalance, D9ResidualFallsWithTheSquareOfTheStep) {
                     residual.size() < 2 ? "" : fmt::format("{:.2f}", order)});
   }
   testing::print_table("D9.order", {"dt/t_c,min", "residual over dissipation", "order"}, rows);
-  figure("D9.order_off_two", std::abs(std::log2(residual[1] / residual.back()) / 3 - 2), 0.2);
+  expect_figure("D9.order_off_two", std::abs(std::log2(residual[1] / residual.back()) / 3 - 2), 0.2);
 }
 
 /// Residual over dissipation of free head-on collisions, summed over phases and over t_c/dt within 1/2 around `steps`.
@@ -92,7 +94,7 @@ TEST(EnergyBalance, D9CollisionsLeaveWhatTheFormulaSays) {
       worst = std::max(worst, std::abs(collision_residual(gamma, steps) / expected - 1));
     }
   }
-  figure("D9.collision.relative_error", worst, 0.05);
+  expect_figure("D9.collision.relative_error", worst, 0.05);
 }
 
 class EnergyBalanceOfFamily : public ::testing::TestWithParam<Family> {};
@@ -105,7 +107,7 @@ TEST_P(EnergyBalanceOfFamily, D9D20UniaxialCompression) {
   const double t_mean = collision_time(start.material, reduced_mass(m, m));
   const double t_min = min_collision_time(start.packing, start.material);
   const EnergyAccount account = scene::compress(start, std::max(50.0, 141 * t_min / t_mean));
-  figure(scene::figure_name("D9", GetParam()), account.residual_over_lost(), scene::energy_line());
+  expect_figure(scene::figure_name("D9", GetParam()), account.residual_over_lost(), scene::energy_line());
 }
 
 INSTANTIATE_TEST_SUITE_P(D20, EnergyBalanceOfFamily, ::testing::ValuesIn(scene::families()), scene::name_of_family);

@@ -21,7 +21,7 @@ namespace {
 using scene::collide;
 using scene::Draw;
 using scene::Encounter;
-using testing::figure;
+using testing::expect_figure;
 
 struct Errors {
   double max = 0, rms = 0, mean = 0;  ///< of e [-]
@@ -78,9 +78,9 @@ TEST(HeadOnCollision, D1FormulaGivesThePublishedNumbers) {
 
 TEST(HeadOnCollision, D1RestitutionOfTheMeanPair) {
   const Errors errors = errors_over_phases(1e-3, 1, 50, 2000, exact_restitution(1e-3, 1));
-  figure("D1.max", errors.max, 3.0e-3);
-  figure("D1.rms", errors.rms, 1.3e-3);
-  figure("D1.mean", std::abs(errors.mean), 2e-4);
+  expect_figure("D1.max", errors.max, 3.0e-3);
+  expect_figure("D1.rms", errors.rms, 1.3e-3);
+  expect_figure("D1.mean", std::abs(errors.mean), 2e-4);
   EXPECT_LE(errors.mean_duration, 3.0e-3);
 }
 
@@ -89,9 +89,9 @@ TEST(HeadOnCollision, D1RestitutionOfTheSmallestPair) {
   const double exact = exact_restitution(0.5e-3, 1), mean_pair = exact_restitution(1e-3, 1);
   const double scale = exact * std::log(exact) / (mean_pair * std::log(mean_pair));
   const Errors errors = errors_over_phases(0.5e-3, 1, 50, 2000, exact);
-  figure("D1.small.max", errors.max, 3.0e-3 * scale);
-  figure("D1.small.rms", errors.rms, 1.3e-3 * scale);
-  figure("D1.small.mean", std::abs(errors.mean), 2e-4 * scale);
+  expect_figure("D1.small.max", errors.max, 3.0e-3 * scale);
+  expect_figure("D1.small.rms", errors.rms, 1.3e-3 * scale);
+  expect_figure("D1.small.mean", std::abs(errors.mean), 2e-4 * scale);
 }
 
 /// Prints the errors over 2000 random phases at 25 ... 400 steps per collision with the orders between neighbouring
@@ -113,9 +113,9 @@ double order_table(const std::string& name, double r, double gamma) {
 }
 
 TEST(HeadOnCollision, D1OrderOneWithDampingTwoWithout) {
-  figure("D1.order_off_one", std::abs(order_table("D1.damped", 1e-3, 1) - 1), 0.1);
-  figure("D1.small.order_off_one", std::abs(order_table("D1.damped_smallest", 0.5e-3, 1) - 1), 0.1);
-  figure("D1.undamped.order_off_two", std::abs(order_table("D1.undamped", 1e-3, 0) - 2), 0.2);
+  expect_figure("D1.order_off_one", std::abs(order_table("D1.damped", 1e-3, 1) - 1), 0.1);
+  expect_figure("D1.small.order_off_one", std::abs(order_table("D1.damped_smallest", 0.5e-3, 1) - 1), 0.1);
+  expect_figure("D1.undamped.order_off_two", std::abs(order_table("D1.undamped", 1e-3, 0) - 2), 0.2);
 }
 
 /// Largest error of the relative motion over its amplitude, of two spheres that touch each other on both sides through
@@ -149,8 +149,8 @@ TEST(ClosedContact, D1OrderTwoWithDampingAndWithoutJump) {
                     errors.size() < 2 ? "" : fmt::format("{:.2f}", order)});
   }
   testing::print_table("D1.closed", {"period/dt", "max error of position over amplitude", "order"}, rows);
-  figure("D1.closed.order_off_two", std::abs(std::log2(errors.front() / errors.back()) / std::log2(400.5 / 50.5) - 2),
-         0.05);
+  expect_figure("D1.closed.order_off_two",
+                std::abs(std::log2(errors.front() / errors.back()) / std::log2(400.5 / 50.5) - 2), 0.05);
 }
 
 // With t_c/dt whole a contact begins and ends at the same phase of a step and the two errors cancel, except at phases
@@ -172,11 +172,11 @@ TEST(HeadOnCollision, D2WholeStepsPerCollisionHideTheError) {
                     all.empty() ? "" : fmt::format("{:.2f}", std::log2(all.back() / trapped))});
     all.push_back(trapped);
     if (steps == 100) {
-      figure("D2.trapped_over_honest", trapped / honest, 0.1);
+      expect_figure("D2.trapped_over_honest", trapped / honest, 0.1);
       EXPECT_NEAR(honest, 1.4e-3, 0.1e-3) << "what such a study does not see";
     }
   }
-  figure("D2.false_order_off_two", std::abs(std::log2(all.front() / all.back()) / 4 - 2), 0.1);
+  expect_figure("D2.false_order_off_two", std::abs(std::log2(all.front() / all.back()) / 4 - 2), 0.1);
   testing::print_table(
       "D2.trap", {"t_c/dt", "max error of e, t_c/dt whole", "max error, t_c/dt within 1/2 around it", "false order"},
       rows);
@@ -191,7 +191,7 @@ TEST(HeadOnCollision, D3ContactEndsAtOverlapZero) {
   EXPECT_NEAR(at_force_zero, 0.927207, 5e-7);
 
   const Errors errors = errors_over_phases(1e-3, 1, 400, 2000, at_overlap_zero);
-  figure("D3.overlap_zero", std::abs(errors.mean), 2e-5);
+  expect_figure("D3.overlap_zero", std::abs(errors.mean), 2e-5);
   EXPECT_GT(std::abs(at_overlap_zero + errors.mean - at_force_zero), 1e-3) << "the other exit rule must be told apart";
 }
 

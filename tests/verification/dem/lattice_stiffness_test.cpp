@@ -17,7 +17,7 @@
 namespace grainlaw::dem {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 const double k = Material{}.stiffness;
 
@@ -44,7 +44,7 @@ TEST(LatticeStiffness, FaceCentredCubic) {
     error = std::max(
         {error, off.cwiseAbs().maxCoeff() / stiff, (response.relaxed - response.affine).cwiseAbs().maxCoeff() / stiff});
   }
-  figure("lattice_stiffness.fcc", error, 1e-12);
+  expect_figure("lattice_stiffness.fcc", error, 1e-12);
 }
 
 TEST(LatticeStiffness, OneSphereInAnOblongCell) {
@@ -70,9 +70,9 @@ TEST(LatticeStiffness, OneSphereInAnOblongCell) {
   }
   const Deviator<double> A1 = response.relaxed.row(0).tail<5>(), A2 = response.relaxed.col(0).tail<5>();
   const Eigen::Matrix3d stress = sigma.asDiagonal();
-  figure("lattice_stiffness.oblong", error / largest, 1e-12);
-  figure("lattice_stiffness.oblong.identity", (A1 - 2.0 / 3 * (A2 - deviator<double>(stress))).norm() / A2.norm(),
-         1e-12);
+  expect_figure("lattice_stiffness.oblong", error / largest, 1e-12);
+  expect_figure("lattice_stiffness.oblong.identity",
+                (A1 - 2.0 / 3 * (A2 - deviator<double>(stress))).norm() / A2.norm(), 1e-12);
   EXPECT_GT(A2.norm(), 1e-3 * largest);
 }
 

@@ -18,7 +18,7 @@
 namespace grainlaw::dem {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 struct Lattice {
   const char* name;
@@ -63,8 +63,8 @@ TEST_P(LatticeTest, D11PressureFabricAndCoordination) {
       EXPECT_LE(scene::force_on(sim, i).norm(), 1e-13 * k * (2 * r() - d())) << "each site is a centre of symmetry";
     }
   }
-  figure(std::string("D11.") + name + ".mean", error, 1e-13);
-  figure(std::string("D11.") + name + ".deviator", deviator, 1e-14);
+  expect_figure(std::string("D11.") + name + ".mean", error, 1e-13);
+  expect_figure(std::string("D11.") + name + ".deviator", deviator, 1e-14);
 }
 
 TEST_P(LatticeTest, D11StaysInEquilibrium) {

@@ -15,7 +15,7 @@
 namespace grainlaw::dem {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 constexpr double kTolerance = 1e-5;
 
@@ -99,9 +99,9 @@ TEST(NearJamming, D23RelaxedOnlyInEquilibrium) {
   EXPECT_GE(claims, 15) << "given enough passes every one comes to rest";
   EXPECT_GT(flagged, 15) << "and none within 10 passes";
   EXPECT_LE(slope_error, 0.15) << "nu_J is not the jamming point";
-  figure("D23.net_force_over_line", worst, 1);
-  figure("D23.wrong_flags", wrong_flags, 0);
-  figure("D23.mean_force_error", disagreement, 1e-6);
+  expect_figure("D23.net_force_over_line", worst, 1);
+  expect_figure("D23.wrong_flags", wrong_flags, 0);
+  expect_figure("D23.mean_force_error", disagreement, 1e-6);
 }
 
 // Below its jamming point a packing loses its contacts, or keeps some that touch by rounding only.
@@ -119,7 +119,7 @@ TEST(NearJamming, D23BelowJammingNothingIsLeft) {
     EXPECT_TRUE(relax_at(state, 0.55).relaxed);
     left = std::max(left, seen(state).net / (state.material.stiffness * mean_radius(state.packing)));
   }
-  figure("D23.unjammed_net_force", left, 1.1e-13);
+  expect_figure("D23.unjammed_net_force", left, 1.1e-13);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 using scene::collide;
 using scene::Draw;
 using scene::Encounter;
-using testing::figure;
+using testing::expect_figure;
 
 Encounter oblique(double r_i, double r_j, Draw& draw) {
   Encounter encounter;
@@ -46,7 +46,7 @@ std::ostream& operator<<(std::ostream& out, const Pair& pair) { return out << pa
 class ObliquePair : public ::testing::TestWithParam<Pair> {
  protected:
   static void judge(const std::string& what, double value, double bound) {
-    figure(fmt::format("D4.{}.{}", what, GetParam().name), value, bound);
+    expect_figure(fmt::format("D4.{}.{}", what, GetParam().name), value, bound);
   }
 };
 

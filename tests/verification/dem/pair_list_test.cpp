@@ -15,13 +15,13 @@ namespace {
 using scene::Draw;
 using scene::Family;
 using scene::ListFaults;
-using testing::figure;
+using testing::expect_figure;
 
 TEST(PairList, D19RandomConfigurations) {
   const ListFaults faults = scene::random_list_faults(20000, 41);
-  figure("D19.missed.20000", static_cast<double>(faults.missed), 0);
-  figure("D19.double.20000", static_cast<double>(faults.twice), 0);
-  figure("D19.invented.20000", static_cast<double>(faults.invented), 0);
+  expect_figure("D19.missed.20000", static_cast<double>(faults.missed), 0);
+  expect_figure("D19.double.20000", static_cast<double>(faults.twice), 0);
+  expect_figure("D19.invented.20000", static_cast<double>(faults.invented), 0);
 }
 
 class PairListOfFamily : public ::testing::TestWithParam<Family> {};
@@ -42,7 +42,7 @@ TEST_P(PairListOfFamily, D19D20LargerPackings) {
       faults_of_all += faults.total();
     }
   }
-  figure(scene::figure_name("D19.faults", GetParam()), static_cast<double>(faults_of_all), 0);
+  expect_figure(scene::figure_name("D19.faults", GetParam()), static_cast<double>(faults_of_all), 0);
 }
 
 TEST_P(PairListOfFamily, SmallSpheresInAGrowingCell) {
@@ -93,7 +93,7 @@ TEST_P(PairListOfFamily, D19AlongARunThatShearsAndCollapses) {
     scene::step(sim, motion(k + 0.5), motion(k + 1));
     if (k % 50 == 0) missed += scene::contacts_missed(sim.list, sim.state.packing);
   }
-  figure(scene::figure_name("D19.missed_in_collapse", GetParam()), static_cast<double>(missed), 0);
+  expect_figure(scene::figure_name("D19.missed_in_collapse", GetParam()), static_cast<double>(missed), 0);
   EXPECT_NEAR(volume_fraction(sim.state.packing), 1.2, 1e-9);
   EXPECT_GT(sim.rebuilds, 3U);
 }

@@ -21,7 +21,7 @@
 namespace grainlaw::dem {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 struct Errors {
   double force = 0, max_force = 0;  // of a sphere, rms and largest, over the mean contact force
@@ -88,10 +88,10 @@ TEST(PrecisionTable, ForcesAndPressure) {
       worst_double = {0, std::max(worst_double.max_force, full.max_force), std::max(worst_double.pressure, std::abs(full.pressure))};
     }
     const std::string at = fmt::format("nu{:.2f}", nu);
-    figure("precision.mixed.force." + at, worst_mixed.force, 1e-5);
-    figure("precision.mixed.P_star." + at, worst_mixed.pressure, 1e-6);
-    figure("precision.double.force." + at, worst_double.max_force, 1e-12);
-    figure("precision.double.P_star." + at, worst_double.pressure, 1e-12);
+    expect_figure("precision.mixed.force." + at, worst_mixed.force, 1e-5);
+    expect_figure("precision.mixed.P_star." + at, worst_mixed.pressure, 1e-6);
+    expect_figure("precision.double.force." + at, worst_double.max_force, 1e-12);
+    expect_figure("precision.double.P_star." + at, worst_double.pressure, 1e-12);
     rows.push_back({fmt::format("{:.2f}", nu), fmt::format("{:.1e}", worst_mixed.force), fmt::format("{:.1e}", worst_mixed.max_force),
                                      fmt::format("{:.1e}", worst_mixed.pressure), fmt::format("{:.1e}", worst_double.max_force),
                                      fmt::format("{:.1e}", worst_double.pressure)});
@@ -114,7 +114,7 @@ TEST(PrecisionTable, JammingDensity) {
   const auto nu_c = [&](const std::vector<double>& P) { return nu[1] - P[1] * (nu[0] - nu[1]) / (P[0] - P[1]); };
   ASSERT_GT(nu_c(exact), 0.64);
   ASSERT_LT(nu_c(exact), 0.68);
-  figure("precision.mixed.nu_c", std::abs(nu_c(mixed) - nu_c(exact)), 1e-5);
+  expect_figure("precision.mixed.nu_c", std::abs(nu_c(mixed) - nu_c(exact)), 1e-5);
 }
 
 TEST(PrecisionTable, NearJamming) {
@@ -123,7 +123,7 @@ TEST(PrecisionTable, NearJamming) {
   ASSERT_LT(seen.mean_overlap, 3e-4);
   ASSERT_GT(seen.mean_overlap, 3e-5);
   // of a sphere, the sum over its contacts
-  figure("precision.mixed.sphere_force.near_jamming_at_1e-4", force_errors<float>(state).force * seen.mean_overlap / 1e-4, 3e-3);
+  expect_figure("precision.mixed.sphere_force.near_jamming_at_1e-4", force_errors<float>(state).force * seen.mean_overlap / 1e-4, 3e-3);
 }
 
 // Of one contact whose overlap is 1e-4 of the mean radius, anywhere in a cell of the paper's size.
@@ -139,8 +139,8 @@ TEST(PrecisionTable, OneShallowContact) {
     square += errors.max_force * errors.max_force / kPairs;
     largest = std::max(largest, errors.max_force);
   }
-  figure("precision.mixed.contact_force_at_1e-4.rms", std::sqrt(square), 2e-3);
-  figure("precision.mixed.contact_force_at_1e-4.largest", largest, 4e-3);
+  expect_figure("precision.mixed.contact_force_at_1e-4.rms", std::sqrt(square), 2e-3);
+  expect_figure("precision.mixed.contact_force_at_1e-4.largest", largest, 4e-3);
 }
 
 State moving_packing() {
@@ -181,7 +181,7 @@ TEST(PortableBits, R2SameOnAllVectorInstructions) {
   }
   EXPECT_GE(compared, 2);
   fmt::print("count R2.targets {}\n", compared);
-  figure("R2.differing_targets", differing, 0);
+  expect_figure("R2.differing_targets", differing, 0);
 }
 
 // No force depends on the skin: positions and velocities are the same to the last bit, totals to rounding.
@@ -199,7 +199,7 @@ TEST(PortableBits, SkinChangesNoForce) {
     if (expected.empty()) expected = sim.state.packing.vx;
     differing += sim.state.packing.vx == expected ? 0 : 1;
   }
-  figure("precision.skins_that_change_forces", differing, 0);
+  expect_figure("precision.skins_that_change_forces", differing, 0);
 }
 
 // Over 20,000 steps trajectories part (chaos), averages must not: paired over packings, the mean difference of the two
@@ -236,8 +236,8 @@ TEST(PrecisionStatistics, TwentyThousandSteps) {
     fabric.add(F[0] / F[1] - 1);
   }
   for (const auto& [name, sum, width] : {std::tuple{"P_star", pressure, 0.05}, {"C_star", contacts, 0.02}, {"F_v", fabric, 0.02}}) {
-    figure(fmt::format("precision.statistics.{}.over_interval", name), std::abs(sum.mean()) / sum.half_width(), 1);
-    figure(fmt::format("precision.statistics.{}.interval", name), sum.half_width(), width);
+    expect_figure(fmt::format("precision.statistics.{}.over_interval", name), std::abs(sum.mean()) / sum.half_width(), 1);
+    expect_figure(fmt::format("precision.statistics.{}.interval", name), sum.half_width(), width);
   }
 }
 

@@ -14,7 +14,7 @@
 namespace grainlaw::dem {
 namespace {
 
-using grainlaw::testing::figure;
+using grainlaw::testing::expect_figure;
 using grainlaw::testing::refusal;
 
 /// A packing in contact, moving, and a path with a corner: shear, then compression, in some hundred steps.
@@ -99,7 +99,7 @@ TEST_F(Restart, R5EveryStepContinuesToTheSameBits) {
   EXPECT_GT(points, 400);
   EXPECT_GT(rebuilds, 20);
   fmt::print("count R5.restart_points {}\n", points);
-  figure("R5.differing_restarts", differing, 0);
+  expect_figure("R5.differing_restarts", differing, 0);
 }
 
 // The list of a continued run is that of the cell and the positions at its last rebuild, not one of the moment: else a
@@ -123,7 +123,7 @@ TEST_F(Restart, R5TheListIsTheInterruptedRuns) {
   run_element_test(scene.start, scene.path, scene.options, {}, compare);
   EXPECT_GT(lists, 100);
   EXPECT_GT(largest_stretch, 0.005);
-  figure("R5.differing_lists", differing, 0);
+  expect_figure("R5.differing_lists", differing, 0);
 }
 
 // R10: a stop saves before it throws; many stops in a row lose nothing.
@@ -145,7 +145,7 @@ TEST_F(Restart, R10AStoppedRunHasSavedItsLastStep) {
       const ElementTest test =
           saved ? continue_element_test(*saved, scene.path, scene.options, control, stop_at_the_seventh, only_when_stopped)
                 : run_element_test(scene.start, scene.path, scene.options, control, stop_at_the_seventh, only_when_stopped);
-      figure("R10.differing_bytes", bytes_of(test.rows, test.end) == bytes_of(whole.rows, whole.end) ? 0 : 1, 0);
+      expect_figure("R10.differing_bytes", bytes_of(test.rows, test.end) == bytes_of(whole.rows, whole.end) ? 0 : 1, 0);
       return;
     } catch (const Interrupted&) {
       ASSERT_TRUE(saved);
@@ -235,7 +235,7 @@ TEST_F(Restart, R11ADamagedCheckpointIsRefused) {
   }
   accepted += refused(sound + "x") ? 0 : 1;
   EXPECT_GT(damages, 900);
-  figure("R11.damaged_accepted", accepted, 0);
+  expect_figure("R11.damaged_accepted", accepted, 0);
   put("checkpoint", sound);
   EXPECT_NO_THROW(read_checkpoint(file));
   write_state(file, scene.start);  // whole, but another format

@@ -20,7 +20,7 @@ namespace grainlaw::dem {
 namespace {
 
 using scene::Family;
-using testing::figure;
+using testing::expect_figure;
 
 using Rows = std::vector<Observation>;
 
@@ -135,9 +135,9 @@ TEST(RunSafeguards, D9ProductionReportsWarnsAndStops) {
   EXPECT_GT(stopped, 0);
   EXPECT_GT(warned, stopped);
   EXPECT_GT(silent, 0);
-  figure("D9.production.residual_not_its_formula", column_error, 1e-13);
-  figure("D9.production.wrong_warnings", wrong_warnings, 0);
-  figure("D9.production.wrong_stops", wrong_stops, 0);
+  expect_figure("D9.production.residual_not_its_formula", column_error, 1e-13);
+  expect_figure("D9.production.wrong_warnings", wrong_warnings, 0);
+  expect_figure("D9.production.wrong_stops", wrong_stops, 0);
 }
 
 // At the default step a driven, jammed packing passes its own judgement with the line at which a run stops.
@@ -154,7 +154,7 @@ TEST(RunSafeguards, D9ProductionAtTheDefaultStep) {
       worst = std::max(worst, *std::max_element(judged.begin(), judged.end()));
     }
   }
-  figure("D9.production.default_step", worst, 1e-2);
+  expect_figure("D9.production.default_step", worst, 1e-2);
 }
 
 /// Pressure of a series at a shear path, linear between rows.
@@ -180,8 +180,8 @@ TEST(RunSafeguards, D9WorkThatPassesZeroDoesNotStopASoundRun) {
   }
   EXPECT_GT(naive, 2e-2) << "the scale that passes zero would have stopped it";
   const std::vector<double> judged = judged_residuals(rows);
-  figure("D9.zero_work.judged", *std::max_element(judged.begin(), judged.end()), 1e-2);
-  figure("D9.zero_work.pressure_error", difference, 1e-2);
+  expect_figure("D9.zero_work.judged", *std::max_element(judged.begin(), judged.end()), 1e-2);
+  expect_figure("D9.zero_work.pressure_error", difference, 1e-2);
   EXPECT_TRUE(row_of_stop(start, path, options_of(1 / 1.5, 1000, 2000)).has_value())
       << "broken, the same run must stop";
 }
@@ -212,8 +212,8 @@ TEST(RunSafeguards, D16UnstableRunsAreStopped) {
   }
   EXPECT_EQ(unstable, 256);
   EXPECT_EQ(sound, 64);
-  figure("D16.finished_green_of_256", finished_green, 0);
-  figure("D16.stopped_although_sound_of_64", stopped_although_sound, 0);
+  expect_figure("D16.finished_green_of_256", finished_green, 0);
+  expect_figure("D16.stopped_although_sound_of_64", stopped_although_sound, 0);
 }
 
 /// I of a row from its definition; the leading edge of the cosine follows z(t) = z_0 + (z_f - z_0)(1 - cos(pi t/tau))/2.
@@ -260,8 +260,8 @@ TEST(RunSafeguards, D25InertialNumber) {
   }
   EXPECT_GT(warned, 2);
   EXPECT_GT(silent, 2);
-  figure("D25.error", error, 1e-12);
-  figure("D25.wrong_warnings_of_" + std::to_string(runs), wrong_warnings, 0);
+  expect_figure("D25.error", error, 1e-12);
+  expect_figure("D25.wrong_warnings_of_" + std::to_string(runs), wrong_warnings, 0);
 }
 
 }  // namespace

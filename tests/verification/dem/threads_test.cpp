@@ -15,7 +15,7 @@ namespace grainlaw::dem {
 namespace {
 
 using scene::bits_of;
-using testing::figure;
+using testing::expect_figure;
 
 using Bits = std::vector<std::uint64_t>;
 using Trace = std::vector<Bits>;  ///< one entry per state or row that is compared
@@ -63,8 +63,8 @@ void compare(const std::string& what, std::size_t expected, const Run& run) {
     }
   }
   const std::size_t wanted = expected * (std::size(kThreads) - 1);
-  figure(fmt::format("R1.not_compared_of_{}.{}", wanted, what), static_cast<double>(wanted - compared), 0);
-  figure("R1.differing_hashes." + what, static_cast<double>(differing), 0);
+  expect_figure(fmt::format("R1.not_compared_of_{}.{}", wanted, what), static_cast<double>(wanted - compared), 0);
+  expect_figure("R1.differing_hashes." + what, static_cast<double>(differing), 0);
 }
 
 TEST(Threads, R1DrivenRunWithRebuilds) {

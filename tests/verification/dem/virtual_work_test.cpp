@@ -17,7 +17,7 @@ namespace {
 
 using scene::Draw;
 using scene::Family;
-using testing::figure;
+using testing::expect_figure;
 
 const Material kNoDrag{2000, 1e8, 1, 0};
 
@@ -96,16 +96,16 @@ TEST_P(VirtualWork, D6ForcesSumToZero) {
   const Simulation sim = scene::start(state);
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < state.packing.size(); ++i) total += scene::force_on(sim, i);
-  figure(scene::figure_name("D6", GetParam()), total.norm() / reference.max_force, 1e-12);
+  expect_figure(scene::figure_name("D6", GetParam()), total.norm() / reference.max_force, 1e-12);
 }
 
 TEST_P(VirtualWork, D7StressIsTheStrainDerivativeOfTheEnergy) {
-  figure(scene::figure_name("D7.random", GetParam()), stress_error(random_overlaps(), 1e-5), 1e-9);
-  figure(scene::figure_name("D7.relaxed", GetParam()), stress_error(relaxed(GetParam()), 1e-7), 1e-7);
+  expect_figure(scene::figure_name("D7.random", GetParam()), stress_error(random_overlaps(), 1e-5), 1e-9);
+  expect_figure(scene::figure_name("D7.relaxed", GetParam()), stress_error(relaxed(GetParam()), 1e-7), 1e-7);
 }
 
 TEST_P(VirtualWork, D8ForceIsTheGradientOfTheEnergy) {
-  figure(scene::figure_name("D8", GetParam()), force_error(random_overlaps(), 1e-5, 15), 1e-8);
+  expect_figure(scene::figure_name("D8", GetParam()), force_error(random_overlaps(), 1e-5, 15), 1e-8);
 }
 
 TEST_P(VirtualWork, EngineEqualsThePlainReference) {
@@ -178,7 +178,7 @@ TEST(NewtonsThirdLaw, D6PairForcesAreOppositeToTheLastBit) {
     ASSERT_NE(scene::force_on(sim, 0).norm(), 0);
     for (std::size_t a = 0; a < 3; ++a) different += sim.force[0][a] != -sim.force[1][a] ? 1 : 0;
   }
-  figure("D6.pair_forces_not_opposite", different, 0);
+  expect_figure("D6.pair_forces_not_opposite", different, 0);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace grainlaw::fit {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 const std::vector<TestRecord>& records() {
   static const std::vector<TestRecord> tests = [] {
@@ -122,8 +122,8 @@ TEST(BadData, F7OutliersAreFlaggedByTestAndColumn) {
     }
     EXPECT_GT(series, 80);
     const std::string name = part == 0.01 ? "F7.outliers_1_percent" : "F7.outliers_10_percent";
-    figure(name + ".silent", unflagged, 0);
-    figure(name + ".wrong_test_named", falsely, 0);
+    expect_figure(name + ".silent", unflagged, 0);
+    expect_figure(name + ".wrong_test_named", falsely, 0);
   }
 }
 
@@ -151,7 +151,7 @@ TEST(BadData, F7HuberLossIsHardlyMovedByOutliers) {
   const double clean = s_max(records(), Loss::squares);
   const double squares = std::abs(s_max(tests, Loss::squares) - clean);
   EXPECT_GT(squares, 0.05 * clean);
-  figure("F7.outliers_huber_over_squares", std::abs(s_max(tests, Loss::huber) - clean) / squares, 0.1);
+  expect_figure("F7.outliers_huber_over_squares", std::abs(s_max(tests, Loss::huber) - clean) / squares, 0.1);
 }
 
 TEST(BadData, F7RunsCountedTwiceAreRefused) {
@@ -182,7 +182,7 @@ TEST(BadData, F7RunsCountedTwiceAreRefused) {
     everything.back().packing.seed += 100;
   }
   expect_refusal(everything, "-again: holds the same series as test ");
-  figure("F7.counted_twice.silent", silent, 0);
+  expect_figure("F7.counted_twice.silent", silent, 0);
 }
 
 TEST(BadData, F7OtherUnitsAreRefused) {
@@ -228,7 +228,7 @@ TEST(BadData, F7OtherUnitsAreRefused) {
       }
     }
   }
-  figure("F7.units.silent", silent, 0);
+  expect_figure("F7.units.silent", silent, 0);
 }
 
 TEST(BadData, F7SwappedColumnsAreRefused) {
@@ -278,7 +278,7 @@ TEST(BadData, F7SwappedColumnsAreRefused) {
     }
   }
   EXPECT_EQ(pairs, 23 * 22 / 2 - 1);
-  figure("F7.swapped_columns.silent", silent, 0);
+  expect_figure("F7.swapped_columns.silent", silent, 0);
 }
 
 }  // namespace

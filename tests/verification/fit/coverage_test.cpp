@@ -15,18 +15,18 @@ class Coverage : public ::testing::TestWithParam<int> {};
 
 TEST_P(Coverage, F2IsotropicLaws) {
   const CoverageStudy study{1000, GetParam(), 0, 0, 1000};
-  testing::coverage_figures("F2.isotropic." + study.name(), testing::coverage_of_isotropic_laws(study), 0.93, 0.97);
+  testing::expect_coverage("F2.isotropic." + study.name(), testing::coverage_of_isotropic_laws(study), 0.93, 0.97);
 }
 
 TEST_P(Coverage, F2SteadyLaws) {
   const CoverageStudy study{1000, GetParam(), 0, 0, 5000};
-  testing::coverage_figures("F2.steady." + study.name(), testing::coverage_of_steady_laws(study), 0.93, 0.97);
+  testing::expect_coverage("F2.steady." + study.name(), testing::coverage_of_steady_laws(study), 0.93, 0.97);
 }
 
 TEST_P(Coverage, F3IsotropicLawsFromCorrelatedRows) {
   for (const double rho : {0.5, 0.9}) {
     const CoverageStudy study{1000, GetParam(), rho, 0, 20000};
-    testing::coverage_figures("F3.isotropic." + study.name(), testing::coverage_of_isotropic_laws(study), 0.90, 1);
+    testing::expect_coverage("F3.isotropic." + study.name(), testing::coverage_of_isotropic_laws(study), 0.90, 1);
   }
 }
 
@@ -35,7 +35,7 @@ INSTANTIATE_TEST_SUITE_P(Packings, Coverage, ::testing::Values(3, 5, 10));
 // 40 sets: were an interval to hold 90 % only, as many as 11 misses would happen to one parameter in 800; 14 to one in 10^5.
 TEST(CoverageOfAll, F3ACompleteCalibrationInReducedNumber) {
   const CoverageStudy study{40, 3, 0.9, 0, 70000};
-  testing::coverage_figures("F3.reduced." + study.name(), testing::coverage_of_calibration(study), 1 - 11. / 40, 1);
+  testing::expect_coverage("F3.reduced." + study.name(), testing::coverage_of_calibration(study), 1 - 11. / 40, 1);
 }
 
 }  // namespace

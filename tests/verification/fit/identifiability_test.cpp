@@ -12,7 +12,7 @@
 namespace grainlaw::fit {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 class Identifiability : public ::testing::TestWithParam<bool> {
  protected:
@@ -47,7 +47,7 @@ class Identifiability : public ::testing::TestWithParam<bool> {
         EXPECT_EQ(c.covariance.row(static_cast<Eigen::Index>(i)).norm(), 0) << name;
       }
     }
-    figure("F6." + name_of_case + (GetParam() ? "_noisy" : "_exact") + ".confident", confident, 0);
+    expect_figure("F6." + name_of_case + (GetParam() ? "_noisy" : "_exact") + ".confident", confident, 0);
   }
 
   static void expect_identified(const Calibration& c, const std::vector<std::string>& laws) {

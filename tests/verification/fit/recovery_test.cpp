@@ -12,14 +12,14 @@ namespace {
 
 TEST(FitRecovery, F1DensityLaws) {
   const testing::RecoveryCount count = testing::recover_state_law(1000, 11);
-  testing::figure("F1.density_laws.missed", 1 - static_cast<double>(count.recovered) / count.starts, 0.01);
-  testing::figure("F1.density_laws.silent", count.silent(), 0);
+  testing::expect_figure("F1.density_laws.missed", 1 - static_cast<double>(count.recovered) / count.starts, 0.01);
+  testing::expect_figure("F1.density_laws.silent", count.silent(), 0);
 }
 
 TEST(FitRecovery, F1Evolution) {
   const testing::RecoveryCount count = testing::recover_evolution(12, 12);
-  testing::figure("F1.evolution.missed", 1 - static_cast<double>(count.recovered) / count.starts, 0.01);
-  testing::figure("F1.evolution.silent", count.silent(), 0);
+  testing::expect_figure("F1.evolution.missed", 1 - static_cast<double>(count.recovered) / count.starts, 0.01);
+  testing::expect_figure("F1.evolution.silent", count.silent(), 0);
 }
 
 class ExactData : public ::testing::TestWithParam<Coupling> {};
@@ -49,7 +49,7 @@ TEST_P(ExactData, EveryStageTogetherFindsTheTruth) {
     const double scale = *expected[i] != 0 ? std::abs(*expected[i]) : std::abs(*expected[i + 1]);
     worst = std::max(worst, std::abs(*value[i] - *expected[i]) / scale);
   }
-  testing::figure("F1.whole_" + to_string(GetParam()), worst, 1e-8);
+  testing::expect_figure("F1.whole_" + to_string(GetParam()), worst, 1e-8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Couplings, ExactData, ::testing::Values(Coupling::energy, Coupling::single),

@@ -51,7 +51,7 @@ TEST(Allocation, OfTheRightHandSideIsNone) {
       taken += allocations - before;
     }
   }
-  testing::figure("law.allocations_of_the_right_hand_side", static_cast<double>(taken), 0);
+  testing::expect_figure("law.allocations_of_the_right_hand_side", static_cast<double>(taken), 0);
 }
 
 }  // namespace

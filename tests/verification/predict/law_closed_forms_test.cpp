@@ -20,7 +20,7 @@ namespace {
 using predict::Method;
 using predict::OutputPoint;
 using predict::Prediction;
-using testing::figure;
+using testing::expect_figure;
 
 constexpr double kDensities[] = {0.67, 0.68, 0.695, 0.70, 0.728, 0.74, 0.78, 0.80, 0.82};
 
@@ -118,8 +118,8 @@ TEST(ClosedForm, O1ErrorFollowsTheTolerance) {
       }
       slope_off = std::max(slope_off, std::abs(study.slope() - 1));
     }
-    figure("O1." + name + "_error_over_rtol", worst.largest_over_tolerance(), method == Method::adams ? 10 : 50);
-    figure("O1." + name + "_slope_off_one", slope_off, 0.2);
+    expect_figure("O1." + name + "_error_over_rtol", worst.largest_over_tolerance(), method == Method::adams ? 10 : 50);
+    expect_figure("O1." + name + "_slope_off_one", slope_off, 0.2);
     for (auto& row : worst.rows(name)) table.push_back(std::move(row));
   }
   testing::print_table("O1.cvode", testing::ToleranceStudy::header(), table);
@@ -136,8 +136,8 @@ TEST(ClosedForm, O6Reversals) {
         bdf = std::max(bdf, largest_error(path, 5, tolerances(relative, Method::bdf)) / relative);
       }
     }
-    figure("O6.adams_error_over_rtol_" + std::to_string(corners) + "_corners", adams, 10);
-    figure("O6.bdf_error_over_rtol_" + std::to_string(corners) + "_corners", bdf, 50);
+    expect_figure("O6.adams_error_over_rtol_" + std::to_string(corners) + "_corners", adams, 10);
+    expect_figure("O6.bdf_error_over_rtol_" + std::to_string(corners) + "_corners", bdf, 50);
   }
 }
 
@@ -159,22 +159,23 @@ double error_after_tiny_piece(double length) {
 
 TEST(ClosedForm, O6CornerOneUlpAfterTheStart) {
   constexpr double ulp = std::numeric_limits<double>::epsilon();
-  figure("O6.error_over_rtol_corner_at_1_ulp", error_after_tiny_piece(ulp), 10);
-  figure("O6.error_over_rtol_corner_at_denormal", error_after_tiny_piece(std::numeric_limits<double>::denorm_min()),
-         10);
-  figure("O6.error_over_rtol_corner_at_1e-12", error_after_tiny_piece(1e-12), 10);
+  expect_figure("O6.error_over_rtol_corner_at_1_ulp", error_after_tiny_piece(ulp), 10);
+  expect_figure("O6.error_over_rtol_corner_at_denormal",
+                error_after_tiny_piece(std::numeric_limits<double>::denorm_min()), 10);
+  expect_figure("O6.error_over_rtol_corner_at_1e-12", error_after_tiny_piece(1e-12), 10);
 }
 
 TEST(ClosedForm, O6CoincidentCorners) {
   std::vector<StraightSegment> path = testing::reversals(0.70, 3, 0.4);
   path[1].length = path[2].length = 0;  // the second and third corner fall on the first
   path[2].strain_start = path[3].strain_start = path[1].strain_start;
-  figure("O6.error_over_rtol_coincident_corners", largest_error(path, 50, tolerances(1e-8, Method::adams)) / 1e-8, 10);
+  expect_figure("O6.error_over_rtol_coincident_corners",
+                largest_error(path, 50, tolerances(1e-8, Method::adams)) / 1e-8, 10);
 }
 
 TEST(ClosedForm, O7StressRatioAboveItsLimitFallsMonotonically) {
   const auto path = testing::reversals(0.70, 0, 0.5);
-  figure("O7.error_over_rtol", largest_error(path, 200, tolerances(1e-8, Method::adams), 1.2, 1.2) / 1e-8, 10);
+  expect_figure("O7.error_over_rtol", largest_error(path, 200, tolerances(1e-8, Method::adams), 1.2, 1.2) / 1e-8, 10);
 
   const LawParameters<double> p = uncoupled();
   const double s_max = p.stress_ratio_max.value(0.70, p.shear_nu_c);

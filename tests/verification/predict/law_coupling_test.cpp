@@ -19,7 +19,7 @@ namespace {
 
 using predict::Method;
 
-using testing::figure;
+using testing::expect_figure;
 using testing::leg;
 using testing::path_from;
 
@@ -44,7 +44,7 @@ TEST(Coupling, ConstantAnisotropyHasAFirstIntegral) {
       }
     }
   }
-  figure("law.first_integral_of_constant_A", off, 1e-9);
+  expect_figure("law.first_integral_of_constant_A", off, 1e-9);
 }
 
 // Printed in equations.md 5.3 for a start at the steady pressure of D2 (Table 2's row D2).

@@ -10,21 +10,16 @@
 #include "predict/batch.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw::predict {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 using testing::leg;
 using testing::leg_to;
 using testing::path_from;
-
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
 
 double distance(const LawState<double>& a, const LawState<double>& b) {
   return std::max({std::abs(a.P / b.P - 1), (a.sigma - b.sigma).norm() / b.P, (a.F - b.F).norm()});
@@ -32,7 +27,7 @@ double distance(const LawState<double>& a, const LawState<double>& b) {
 
 TEST(Integrators, FollowTheClosedFormAtConstantVolume) {
   // a0 = 0: Eqs. (17) and (18) exactly, P constant
-  LawParameters<double> p = parameters();
+  LawParameters<double> p = testing::coupled_parameters();
   p.anisotropy.a0 = 0;
   const auto path = path_from(0.70, {leg(Mode::D2, 0.05)});
   const LawState<double> start = state_from_law(p, 0.70);
@@ -50,13 +45,13 @@ TEST(Integrators, FollowTheClosedFormAtConstantVolume) {
       Walker walker(integrator, accuracy, p, Rung::evolution, Coupling::single);
       errors[i] = distance(walker.walk(path, start).ends.back(), exact);
     }
-    figure("integrators." + to_string(integrator) + ".error", errors[1], euler ? 1e-4 : 1e-6);
+    expect_figure("integrators." + to_string(integrator) + ".error", errors[1], euler ? 1e-4 : 1e-6);
     EXPECT_LT(errors[1], 0.2 * errors[0]) << to_string(integrator) << ": a finer accuracy is more accurate";
   }
 }
 
 TEST(Integrators, RandomPathsByTwoSolversAgreeWithATightReference) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   std::mt19937_64 engine{7};
   const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine); };
   Walker reference(Integrator::erk_8, 1e-13, p, Rung::evolution, Coupling::energy);
@@ -83,12 +78,12 @@ TEST(Integrators, RandomPathsByTwoSolversAgreeWithATightReference) {
       off_explicit = std::max(off_explicit, distance(by_explicit[k], expected[k]));
     }
   }
-  figure("integrators.random_paths.adams_error_over_rtol", off_adams / 1e-9, 10);
-  figure("integrators.random_paths.erk_5_error_over_rtol", off_explicit / 1e-9, 10);
+  expect_figure("integrators.random_paths.adams_error_over_rtol", off_adams / 1e-9, 10);
+  expect_figure("integrators.random_paths.erk_5_error_over_rtol", off_explicit / 1e-9, 10);
 }
 
 TEST(Integrators, BatchesDoNotDependOnThreads) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   std::vector<BatchPath> paths;
   for (int i = 0; i < 50; ++i) {
     const double nu = 0.68 + 0.001 * i;
@@ -105,20 +100,20 @@ TEST(Integrators, BatchesDoNotDependOnThreads) {
     for (std::size_t i = 0; i < paths.size(); ++i)
       different += many[i].P != one[i].P || many[i].sigma != one[i].sigma || many[i].F != one[i].F;
   }
-  figure("integrators.batch.differing_paths", different, 0);
+  expect_figure("integrators.batch.differing_paths", different, 0);
 
   paths[20].start.P = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(run(2), std::exception);
 }
 
 TEST(Integrators, RefuseAccuraciesThatAreNone) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   for (const double bad : {0.0, -1e-6, 1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(Walker(Integrator::erk_5, bad, p, Rung::evolution, Coupling::energy), std::exception) << bad;
 }
 
 TEST(Integrators, RefuseWhatMayReverseOnTheWay) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   auto path = path_from(0.70, {leg(Mode::D2, 0.02)});
   path[0].spin << 0, 0, -1, 0, 0, 0, 1, 0, 0;
   const LawState<double> start = state_from_law(p, 0.70);

@@ -12,6 +12,7 @@
 #include "predict/cvode.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw {
@@ -20,22 +21,16 @@ namespace {
 using predict::Method;
 
 using predict::Prediction;
-using testing::figure;
+using testing::expect_figure;
 using testing::leg;
 using testing::leg_to;
 using testing::path_from;
-
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
 
 constexpr double kLow = 0.67, kHigh = 0.82;  // P(0.82) is 54 times P(0.67)
 
 /// Largest deviation of P from Eq. (14) over the loop 0.67 -> 0.82 -> 0.67, relative to the P of Eq. (14) right there.
 double isotropic_loop(Coupling coupling, const predict::Tolerances& tolerances) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(kLow, {leg_to(Mode::ISO, kHigh), leg_to(Mode::ISO, kLow, true)});
   const auto points = predict::uniform_points(path, 100);
   const Prediction loop = predict::predict(Rung::evolution, p, coupling, path, predict::state_from_law(p, kLow), points,
@@ -55,7 +50,7 @@ double isotropic_loop(Coupling coupling, const predict::Tolerances& tolerances) 
 ///   P - P_0 = P(nu) - P(0.67),  sigma' - sigma'_0 = a2 F' (P - P_0) (energy) or (a0/3) F' ln(nu/0.67) (single);
 /// largest deviation of P and of sigma' over the P right there.
 double sheared_loop(Coupling coupling, const predict::Tolerances& tolerances) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(kLow, {leg(Mode::D2, 0.1), leg_to(Mode::ISO, kHigh), leg_to(Mode::ISO, kLow, true)});
   const auto points = predict::uniform_points(path, 100);
   const Prediction loop = predict::predict(Rung::evolution, p, coupling, path, predict::state_from_law(p, kLow), points,
@@ -82,15 +77,15 @@ TEST(Isotropic, O3LoopFollowsEquation14AndCloses) {
       plain = std::max(plain, isotropic_loop(coupling, {1e-10, 1e-14, method}));
       sheared = std::max(sheared, sheared_loop(coupling, {1e-10, 1e-14, method}));
     }
-    figure("O3.error_over_local_P_" + to_string(coupling), plain, 1e-8);
-    figure("O3.error_over_local_P_after_shear_" + to_string(coupling), sheared, 1e-8);
+    expect_figure("O3.error_over_local_P_" + to_string(coupling), plain, 1e-8);
+    expect_figure("O3.error_over_local_P_after_shear_" + to_string(coupling), sheared, 1e-8);
   }
 }
 
 TEST(Isotropic, O3BulkModulusIntegratesToEquation14) {
   // The product need not integrate B dx, because it knows P(nu); here B alone makes the loop. An error made at 0.82 is
   // carried down as it is, hence over the largest P.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const double length = std::log(kHigh / kLow);
   double off = 0;
   for (const Method method : {Method::adams, Method::bdf}) {
@@ -113,12 +108,12 @@ TEST(Isotropic, O3BulkModulusIntegratesToEquation14) {
       }
     }
   }
-  figure("O3.integral_of_B_over_largest_P", off, 1e-8);
+  expect_figure("O3.integral_of_B_over_largest_P", off, 1e-8);
 }
 
 TEST(Isotropic, FabricAndStressKeepTheirDirectionUnderCompression) {
   // dsigma' = a2 B F' dx with F' constant: sigma' - sigma'_0 = a2 F' (P - P_0), exactly.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg_to(Mode::ISO, 0.80)});
   LawState<double> start = predict::state_from_law(p, 0.70);
   start.F << 0.09, -0.03, 0.02, 0.01, -0.04;
@@ -145,7 +140,7 @@ double expected_unjamming(const LawParameters<double>& p, double excess) {
 }
 
 TEST(Isotropic, O8UnjammingIsFoundWhereThePressureVanishes) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.70, {leg(Mode::ISO, 0.10, true)});
   const auto points = predict::uniform_points(path, 1000);
   double off = 0;
@@ -166,12 +161,12 @@ TEST(Isotropic, O8UnjammingIsFoundWhereThePressureVanishes) {
       }
     }
   }
-  figure("O8.unjamming_strain", off, 1e-9);
+  expect_figure("O8.unjamming_strain", off, 1e-9);
 }
 
 TEST(Isotropic, O8StateJamsAgainWhereItUnjammed) {
   // There and back through unjamming: P = P(nu) - P(nu_J) on the way up, nu_J where P vanished on the way down.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path =
       path_from(0.70, {leg_to(Mode::ISO, 0.63, true), leg_to(Mode::ISO, 0.62, true), leg_to(Mode::ISO, 0.72)});
   const auto points = predict::uniform_points(path, 200);
@@ -200,12 +195,12 @@ TEST(Isotropic, O8StateJamsAgainWhereItUnjammed) {
       }
     }
   }
-  figure("O8.density_of_unjamming_and_jamming", off_density, 1e-9);
-  figure("O8.pressure_after_jamming_again", off_pressure, 1e-9);
+  expect_figure("O8.density_of_unjamming_and_jamming", off_density, 1e-9);
+  expect_figure("O8.pressure_after_jamming_again", off_pressure, 1e-9);
 }
 
 TEST(Isotropic, UnjammedStatesAreZeroInTheirNextSegment) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = path_from(0.68, {leg(Mode::D2, 0.1), leg_to(Mode::ISO, 0.60, true), leg_to(Mode::ISO, 0.70)});
   for (const Rung model : {Rung::reduced, Rung::evolution}) {
     const Prediction prediction = predict::predict(model, p, Coupling::energy, path, predict::state_from_law(p, 0.68),
@@ -221,7 +216,7 @@ TEST(Isotropic, UnjammedStatesAreZeroInTheirNextSegment) {
 TEST(Isotropic, O8ShearedUnloadingUnjamsWithEitherMethod) {
   // Stress that shear left outlives P: a principal stress vanishes first.
   for (const Coupling coupling : {Coupling::energy, Coupling::single}) {
-    const LawParameters<double> p = parameters();
+    const LawParameters<double> p = testing::coupled_parameters();
     const auto path = path_from(0.75, {leg(Mode::D2, 0.1), leg(Mode::UNI, 0.2, true)});
     LawState<double> start = predict::state_from_law(p, 0.75);
     start.P *= 0.9;
@@ -236,7 +231,7 @@ TEST(Isotropic, O8ShearedUnloadingUnjamsWithEitherMethod) {
       EXPECT_EQ(prediction.events.front().kind, predict::EventKind::tension);
       EXPECT_EQ(prediction.warnings.size(), 1U);
     }
-    figure("O8.adams_against_bdf_" + to_string(coupling), std::abs(at[0] - at[1]), 1e-9);
+    expect_figure("O8.adams_against_bdf_" + to_string(coupling), std::abs(at[0] - at[1]), 1e-9);
   }
 }
 

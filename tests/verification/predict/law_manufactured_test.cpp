@@ -20,7 +20,7 @@
 namespace grainlaw::predict {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 using testing::leg;
 using testing::leg_to;
 
@@ -138,8 +138,8 @@ TEST(Manufactured, O5SolutionWithSourcesIsFollowedToTheTolerance) {
         slope_off = std::max(slope_off, std::abs(study.slope() - 1));
       }
     }
-    figure("O5." + name + "_error_over_rtol", worst.largest_over_tolerance(), method == Method::adams ? 10 : 50);
-    figure("O5." + name + "_slope_off_one", slope_off, 0.2);
+    expect_figure("O5." + name + "_error_over_rtol", worst.largest_over_tolerance(), method == Method::adams ? 10 : 50);
+    expect_figure("O5." + name + "_slope_off_one", slope_off, 0.2);
     for (auto& row : worst.rows(name)) table.push_back(std::move(row));
   }
   testing::print_table("O5.cvode", testing::ToleranceStudy::header(), table);

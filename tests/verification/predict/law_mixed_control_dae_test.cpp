@@ -21,7 +21,7 @@
 namespace grainlaw::predict {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 using Quantity = Condition::Quantity;
 
 /// The equations, for one segment from nu_0.
@@ -185,11 +185,12 @@ double farthest(Rung rung, const PathSegment& segment) {
 TEST(MixedControlDae, IsWhatTheLinearSolveForTheRatesGives) {
   for (const Rung rung : {Rung::evolution, Rung::memory}) {
     const std::string name = "mixed.dae." + to_string(rung) + ".";
-    figure(name + "triaxial",
-           farthest(rung, segment(Mode::UNI, 0.05, {{0, Quantity::stress, 0}, {1, Quantity::stress, 0}})), 1e-7);
-    figure(name + "constant_P", farthest(rung, segment(Mode::D2, 0.05, {{Condition::volume, Quantity::P_star, 0}})),
-           1e-7);
-    figure(name + "ramp", farthest(rung, segment(Mode::D2, 0.05, {{Condition::volume, Quantity::P_star, 0.02}})), 1e-7);
+    expect_figure(name + "triaxial",
+                  farthest(rung, segment(Mode::UNI, 0.05, {{0, Quantity::stress, 0}, {1, Quantity::stress, 0}})), 1e-7);
+    expect_figure(name + "constant_P",
+                  farthest(rung, segment(Mode::D2, 0.05, {{Condition::volume, Quantity::P_star, 0}})), 1e-7);
+    expect_figure(name + "ramp", farthest(rung, segment(Mode::D2, 0.05, {{Condition::volume, Quantity::P_star, 0.02}})),
+                  1e-7);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "model/error.hpp"
 #include "predict/mixed_control.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw {
@@ -16,14 +17,8 @@ namespace {
 
 using predict::predict_by_law;
 using predict::Prediction;
-using testing::figure;
+using testing::expect_figure;
 using Quantity = Condition::Quantity;
-
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
 
 PathSegment segment(Mode mode, ExtentKind kind, double extent, std::vector<Condition> conditions = {},
                     bool reverse = false) {
@@ -33,7 +28,7 @@ PathSegment segment(Mode mode, ExtentKind kind, double extent, std::vector<Condi
 }
 
 Prediction run(const Path& path, int rows = 50, const predict::Tolerances& tolerances = {1e-9, 1e-13}) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   return predict_by_law(Rung::evolution, p, Coupling::energy, path, predict::state_from_law(p, path.nu), rows,
                         tolerances, {}, {});
 }
@@ -53,7 +48,7 @@ TEST(MixedControl, TriaxialCompressionKeepsTheLateralStress) {
     for (const int i : {0, 1})
       drift = std::max(drift, std::abs(stress(row)(i, i) / stress(triaxial.rows[0])(i, i) - 1));
   }
-  figure("mixed.triaxial.stress_drift", drift, 1e-8);
+  expect_figure("mixed.triaxial.stress_drift", drift, 1e-8);
   EXPECT_NEAR(triaxial.rows.back().shear_path, 0.1, 1e-9);
   EXPECT_GT(stress(triaxial.rows.back())(2, 2), 1.1 * stress(triaxial.rows[0])(2, 2)) << "the axial stress grows";
 }
@@ -66,8 +61,8 @@ TEST(MixedControl, ConstantPressureShearStopsAtItsStressRatio) {
   const Prediction shear = run(path);
   double drift = 0;
   for (const auto& row : shear.rows) drift = std::max(drift, std::abs(row.state.P / shear.rows[0].state.P - 1));
-  figure("mixed.constant_P.drift", drift, 1e-8);
-  figure("mixed.target_stress_ratio.off", std::abs(shear.rows.back().s_dev - 0.12), 1e-9);
+  expect_figure("mixed.constant_P.drift", drift, 1e-8);
+  expect_figure("mixed.target_stress_ratio.off", std::abs(shear.rows.back().s_dev - 0.12), 1e-9);
   // along D2 at constant P, s = s_max (1 - exp(-beta_s eps_dev)) but for the volume that keeps P
   EXPECT_NE(shear.rows.back().nu, 0.70);
   EXPECT_NEAR(shear.rows.back().nu, 0.70, 0.005);
@@ -84,8 +79,8 @@ TEST(MixedControl, ConstantStressRatioCompressionStopsAtItsPressure) {
   for (const auto& row : radial.rows) {
     if (row.segment == 1) drift = std::max(drift, std::abs(row.s_dev - radial.rows[50].s_dev));
   }
-  figure("mixed.stress_ratio.drift", drift, 1e-8);
-  figure("mixed.target_P_star.off", std::abs(radial.rows.back().state.P - 0.05), 1e-9);
+  expect_figure("mixed.stress_ratio.drift", drift, 1e-8);
+  expect_figure("mixed.target_P_star.off", std::abs(radial.rows.back().state.P - 0.05), 1e-9);
 }
 
 TEST(MixedControl, RampsFollowTheirRate) {
@@ -97,12 +92,12 @@ TEST(MixedControl, RampsFollowTheirRate) {
   double off = 0;
   for (std::size_t i = 0; i < ramp.rows.size(); ++i)
     off = std::max(off, std::abs(ramp.rows[i].state.P - P_0 - 0.02 * length * static_cast<double>(i) / 50) / P_0);
-  figure("mixed.ramp.drift", off, 1e-8);
+  expect_figure("mixed.ramp.drift", off, 1e-8);
 }
 
 TEST(MixedControl, StrainsGivenBackLeadToTheSameStress) {
   // The predicted strain of triaxial compression, row by row, as a strain-controlled path of straight pieces.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const Path path{
       0.70,
       Branch::unloading,
@@ -126,11 +121,11 @@ TEST(MixedControl, StrainsGivenBackLeadToTheSameStress) {
     const auto &a = mixed.rows[i + 1].state, &b = back.rows[i].state;
     off = std::max({off, std::abs(a.P - b.P) / b.P, (a.sigma - b.sigma).norm() / b.P, (a.F - b.F).norm()});
   }
-  figure("mixed.strain_given_back", off, 1e-7);
+  expect_figure("mixed.strain_given_back", off, 1e-7);
 }
 
 TEST(MixedControl, WithoutConditionsItIsThePrediction) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const Path path{0.70,
                   Branch::unloading,
                   {segment(Mode::D2, ExtentKind::eps_dev, 0.05), segment(Mode::UNI, ExtentKind::target_nu, 0.75),
@@ -147,7 +142,7 @@ TEST(MixedControl, WithoutConditionsItIsThePrediction) {
     off = std::max({off, std::abs(a.state.P / b.state.P - 1), (a.state.sigma - b.state.sigma).norm() / b.state.P,
                     (a.state.F - b.state.F).norm(), std::abs(a.nu - b.nu), std::abs(a.shear_path - b.shear_path)});
   }
-  figure("mixed.without_conditions", off, 1e-7);
+  expect_figure("mixed.without_conditions", off, 1e-7);
 }
 
 TEST(MixedControl, WhatCannotBeKeptOrReachedIsSaid) {
@@ -169,7 +164,7 @@ TEST(MixedControl, WhatCannotBeKeptOrReachedIsSaid) {
   EXPECT_NE(message({0.70, Branch::unloading, {segment(Mode::D2, ExtentKind::target_stress_ratio, 0.5)}})
                 .find("target_stress_ratio = 0.5 is not reached"),
             std::string::npos);
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   EXPECT_THROW(predict_by_law(Rung::reduced, p, Coupling::energy,
                               {0.70, Branch::unloading, {segment(Mode::ISO, ExtentKind::target_P_star, 0.05)}},
                               predict::state_from_law(p, 0.70), 10, {}, {}, {}),
@@ -182,7 +177,7 @@ TEST(MixedControl, RowsEndWhereTheStateUnjams) {
   EXPECT_TRUE(unloading.unjammed);
   ASSERT_EQ(unloading.events.size(), 1U);
   EXPECT_EQ(unloading.rows.size(), 50U);
-  EXPECT_NEAR(unloading.events[0].nu, parameters().isotropic.pressure.nu_c, 1e-6);
+  EXPECT_NEAR(unloading.events[0].nu, testing::coupled_parameters().isotropic.pressure.nu_c, 1e-6);
 }
 
 }  // namespace

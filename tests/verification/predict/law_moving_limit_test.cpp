@@ -24,7 +24,7 @@ namespace grainlaw {
 namespace {
 
 using predict::Method;
-using testing::figure;
+using testing::expect_figure;
 using testing::leg_to;
 
 constexpr double kBeta = 30, kStart = 0.68, kEnd = 0.84;
@@ -133,8 +133,8 @@ TEST(MovingLimit, O7StressRatioFollowsTheClosedForm) {
         slope_off = std::max(slope_off, std::abs(study.slope() - 1));
       }
       const std::string name = c.name + (method == Method::adams ? ".adams" : ".bdf");
-      figure("O7." + name + "_error_over_rtol", largest, method == Method::adams ? 10 : 50);
-      figure("O7." + name + "_slope_off_one", slope_off, 0.2);
+      expect_figure("O7." + name + "_error_over_rtol", largest, method == Method::adams ? 10 : 50);
+      expect_figure("O7." + name + "_slope_off_one", slope_off, 0.2);
     }
   }
 }
@@ -171,7 +171,7 @@ TEST(MovingLimit, O7StressIsotropyChangesItsSignOnceAndSMovesAccordingly) {
       }
     }
   }
-  figure("O7.steps_against_the_sign_of_S", against, 0);
+  expect_figure("O7.steps_against_the_sign_of_S", against, 0);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "model/error.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw {
@@ -20,27 +21,22 @@ using predict::Method;
 
 using predict::OutputPoint;
 using predict::Prediction;
-using testing::figure;
+using testing::expect_figure;
 using testing::leg;
 using testing::leg_to;
 using testing::path_from;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
-
 Prediction run(Rung model, const std::vector<StraightSegment>& path, const LawState<double>& start,
                const std::vector<OutputPoint>& points, Method method = Method::adams) {
-  return predict::predict(model, parameters(), Coupling::energy, path, start, points, {1e-8, 1e-12, method}, {}, {});
+  return predict::predict(model, testing::coupled_parameters(), Coupling::energy, path, start, points,
+                          {1e-8, 1e-12, method}, {}, {});
 }
 
 TEST(Rows, O10TheInitialStateIsReturnedExactly) {
   const auto path = path_from(0.70, {leg(Mode::UNI, 0.1), leg(Mode::D2, 0.1)});
-  LawState<double> start = predict::state_from_law(parameters(), 0.70);
+  LawState<double> start = predict::state_from_law(testing::coupled_parameters(), 0.70);
   const LawState<double> of_law = start;
   start.P *= 0.93;
   start.sigma << 1e-3, 2e-4, 0, 1e-5, 0;
@@ -65,8 +61,8 @@ TEST(Rows, O10TheInitialStateIsReturnedExactly) {
     }
     EXPECT_TRUE(run(Rung::evolution, path, start, {}, method).rows.empty());
   }
-  figure("O10.initial_state", off, 0);
-  figure("O10.repeated_rows", apart, 0);
+  expect_figure("O10.initial_state", off, 0);
+  expect_figure("O10.repeated_rows", apart, 0);
 }
 
 /// True when `attempt` is refused as invalid input with a message of one line that contains `name`.
@@ -82,7 +78,7 @@ bool refused_by_name(const std::function<void()>& attempt, const std::string& na
 
 TEST(Rows, O10WhatIsOutOfOrderIsRefusedByName) {
   const auto path = path_from(0.70, {leg(Mode::UNI, 0.1), leg(Mode::D2, 0.1)});
-  const LawState<double> start = predict::state_from_law(parameters(), 0.70);
+  const LawState<double> start = predict::state_from_law(testing::coupled_parameters(), 0.70);
   int unnamed = 0;
   const auto expect_refusal = [&](const std::function<void()>& attempt, const std::string& name) {
     const bool refused = refused_by_name(attempt, name);
@@ -122,12 +118,12 @@ TEST(Rows, O10WhatIsOutOfOrderIsRefusedByName) {
   TestRecord unsorted = test;
   std::swap(unsorted.rows[2].strain, unsorted.rows[3].strain);
   expect_refusal([&] { predict::points_of(unsorted); }, "made-up: row 3:");
-  figure("O10.not_refused_by_name", unnamed, 0);
+  expect_figure("O10.not_refused_by_name", unnamed, 0);
 }
 
 TEST(Rows, O11WorkPerRowDoesNotGrowWithTheNumberOfRows) {
   const auto path = path_from(0.695, {leg_to(Mode::UNI, 0.82)});
-  const LawState<double> start = predict::state_from_law(parameters(), 0.695);
+  const LawState<double> start = predict::state_from_law(testing::coupled_parameters(), 0.695);
   for (const Method method : {Method::adams, Method::bdf}) {
     double per_row[2] = {}, last[2] = {};
     for (const int i : {0, 1}) {
@@ -138,8 +134,8 @@ TEST(Rows, O11WorkPerRowDoesNotGrowWithTheNumberOfRows) {
       last[i] = prediction.rows.back().state.P;
     }
     EXPECT_NEAR(last[1] / last[0], 1, 1e-7);
-    figure(std::string("O11.work_per_row_of_1e6_over_1e4_") + (method == Method::adams ? "adams" : "bdf"),
-           per_row[1] / per_row[0], 1);
+    expect_figure(std::string("O11.work_per_row_of_1e6_over_1e4_") + (method == Method::adams ? "adams" : "bdf"),
+                  per_row[1] / per_row[0], 1);
   }
 }
 
@@ -150,12 +146,13 @@ TEST(Rows, O11WorkPerCornerDoesNotGrowWithTheNumberOfCorners) {
     const int corners = i == 0 ? 1000 : 20000;
     const auto path = testing::reversals(0.74, corners, 1e-3 * (corners + 1));
     const Prediction prediction =
-        run(Rung::evolution, path, predict::state_from_law(parameters(), 0.74), predict::uniform_points(path, 1));
+        run(Rung::evolution, path, predict::state_from_law(testing::coupled_parameters(), 0.74),
+            predict::uniform_points(path, 1));
     ASSERT_EQ(prediction.rows.size(), 2 * path.size());
     EXPECT_EQ(prediction.statistics.restarts, corners + 1);
     per_corner[i] = static_cast<double>(prediction.statistics.rhs_evaluations) / corners;
   }
-  figure("O11.work_per_corner_of_2e4_over_1e3", per_corner[1] / per_corner[0], 1.05);
+  expect_figure("O11.work_per_corner_of_2e4_over_1e3", per_corner[1] / per_corner[0], 1.05);
 }
 
 TEST(Rows, O11LargeStrainSaturates) {
@@ -164,7 +161,7 @@ TEST(Rows, O11LargeStrainSaturates) {
     double off = 0;
     for (const double nu : {0.68, 0.74, 0.82}) {
       for (const Coupling coupling : {Coupling::energy, Coupling::single}) {
-        const LawParameters<double> p = parameters();
+        const LawParameters<double> p = testing::coupled_parameters();
         const auto path = path_from(nu, {leg(Mode::D2, 10)});
         const auto rows = predict::predict(Rung::evolution, p, coupling, path, predict::state_from_law(p, nu),
                                            predict::uniform_points(path, 20), {1e-8, 1e-12, method}, {}, {})
@@ -176,8 +173,8 @@ TEST(Rows, O11LargeStrainSaturates) {
         }
       }
     }
-    figure(std::string("O11.saturation_error_over_rtol_") + (method == Method::adams ? "adams" : "bdf"), off / 1e-8,
-           method == Method::adams ? 10 : 50);
+    expect_figure(std::string("O11.saturation_error_over_rtol_") + (method == Method::adams ? "adams" : "bdf"),
+                  off / 1e-8, method == Method::adams ? 10 : 50);
   }
 }
 

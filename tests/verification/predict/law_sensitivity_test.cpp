@@ -14,7 +14,7 @@
 namespace grainlaw::predict {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 using testing::leg;
 using testing::leg_to;
 using testing::path_from;
@@ -129,12 +129,12 @@ std::vector<StraightSegment> turning() {
 TEST(Sensitivity, IsTheDifferenceOfPredictions) {
   for (const Rung rung : kRungs) {
     const std::string name = "sensitivity." + to_string(rung) + ".";
-    figure(name + "uniaxial", farthest({rung, Coupling::energy, uniaxial()}), 1e-5);
-    figure(name + "reversal", farthest({rung, Coupling::energy, reversal()}), 1e-5);
-    figure(name + "volume_after_shear", farthest({rung, Coupling::energy, volume_after_shear()}), 1e-5);
-    figure(name + "measured_start", farthest({rung, Coupling::energy, volume_after_shear(), false}), 1e-5);
+    expect_figure(name + "uniaxial", farthest({rung, Coupling::energy, uniaxial()}), 1e-5);
+    expect_figure(name + "reversal", farthest({rung, Coupling::energy, reversal()}), 1e-5);
+    expect_figure(name + "volume_after_shear", farthest({rung, Coupling::energy, volume_after_shear()}), 1e-5);
+    expect_figure(name + "measured_start", farthest({rung, Coupling::energy, volume_after_shear(), false}), 1e-5);
   }
-  figure("sensitivity.single.uniaxial", farthest({Rung::evolution, Coupling::single, uniaxial()}), 1e-5);
+  expect_figure("sensitivity.single.uniaxial", farthest({Rung::evolution, Coupling::single, uniaxial()}), 1e-5);
 }
 
 TEST(Sensitivity, EndsAtAReversalWithinASegment) {
@@ -171,7 +171,7 @@ TEST(Sensitivity, OfEqs17And18IsTheirs) {
     differs(slope[4].state.P, m.P_iso / p.isotropic.pressure.p0, 1);
     differs(slope[4].s_dev, 0, 1);
   }
-  figure("sensitivity.closed_form", off, 2e-8);
+  expect_figure("sensitivity.closed_form", off, 2e-8);
 }
 
 TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
@@ -186,7 +186,7 @@ TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
       off = std::max({off, std::abs(a.P / b.P - 1), (a.sigma - b.sigma).norm() / b.P, (a.F - b.F).norm()});
     }
   }
-  figure("sensitivity.rows_changed", off, 20 * kTight.relative);
+  expect_figure("sensitivity.rows_changed", off, 20 * kTight.relative);
 }
 
 TEST(Sensitivity, EndsWhereTheStateUnjams) {
@@ -220,7 +220,7 @@ TEST(Sensitivity, IsThatOfTheImplicitMethodToo) {
     const double scale = std::max(adams[k].state.sigma.norm(), 1e-4 / std::max(1e-2, std::abs(*fields(p)[k])));
     off = std::max(off, (adams[k].state.sigma - bdf[k].state.sigma).norm() / scale);
   }
-  figure("sensitivity.bdf_beside_adams", off, 1e-6);
+  expect_figure("sensitivity.bdf_beside_adams", off, 1e-6);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace grainlaw::predict {
 namespace {
 
-using testing::figure;
+using testing::expect_figure;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -89,8 +89,8 @@ TEST(Solver, O14OneFaultAtAnyEvaluationIsSurvivedOrReported) {
   }
   EXPECT_GT(tally.arrived, 100) << "a smaller step gets round a single fault";
   EXPECT_GT(tally.reported, 0) << "but not at the first evaluation";
-  figure("O14.one_fault.otherwise", tally.otherwise, 0);
-  figure("O14.one_fault.error_over_rtol", off / 1e-8, 10);
+  expect_figure("O14.one_fault.otherwise", tally.otherwise, 0);
+  expect_figure("O14.one_fault.error_over_rtol", off / 1e-8, 10);
 }
 
 TEST(Solver, O14LastingFaultsAreReported) {
@@ -108,7 +108,7 @@ TEST(Solver, O14LastingFaultsAreReported) {
     tally.add(integrate([](double, double) { return std::numeric_limits<double>::max(); }, 2, method), 2);
     EXPECT_EQ(tally.arrived, 0);
   }
-  figure("O14.lasting_fault.otherwise", tally.otherwise, 0);
+  expect_figure("O14.lasting_fault.otherwise", tally.otherwise, 0);
 }
 
 TEST(Solver, O14StateThatOverflowsIsReported) {
@@ -141,8 +141,8 @@ TEST(Solver, O14StepLimitIsReported) {
   }
   EXPECT_GT(tally.arrived, 1);
   EXPECT_GT(tally.reported, 50);
-  figure("O14.step_limit.otherwise", tally.otherwise, 0);
-  figure("O14.step_limit.error_over_rtol", off / 1e-8, 10);
+  expect_figure("O14.step_limit.otherwise", tally.otherwise, 0);
+  expect_figure("O14.step_limit.error_over_rtol", off / 1e-8, 10);
 }
 
 TEST(Solver, O14VanishingStepIsReported) {
@@ -157,7 +157,7 @@ TEST(Solver, O14VanishingStepIsReported) {
     tally.add(integrate([&](double, double) { return ++call % 2 ? 1e20 : -1e20; }, 2, method), 2);
     EXPECT_EQ(tally.arrived, 0);
   }
-  figure("O14.vanishing_step.otherwise", tally.otherwise, 0);
+  expect_figure("O14.vanishing_step.otherwise", tally.otherwise, 0);
 }
 
 TEST(Solver, O14IntervalsWithoutRoomForAStepAreWalkedOrReported) {
@@ -182,8 +182,8 @@ TEST(Solver, O14IntervalsWithoutRoomForAStepAreWalkedOrReported) {
   }
   EXPECT_GT(tally.arrived, 50);
   EXPECT_GT(tally.reported, 3) << "the last ones are too close together";
-  figure("O14.short_interval.otherwise", tally.otherwise, 0);
-  figure("O14.short_interval.error_over_rtol", off / 1e-8, 10);
+  expect_figure("O14.short_interval.otherwise", tally.otherwise, 0);
+  expect_figure("O14.short_interval.error_over_rtol", off / 1e-8, 10);
 }
 
 TEST(Solver, O14EventThatIsNoNumberIsReported) {
@@ -207,8 +207,8 @@ TEST(Solver, O14EventThatIsNoNumberIsReported) {
   }
   EXPECT_EQ(tally.arrived, 0) << "none runs past the event";
   EXPECT_GT(tally.reported, 100);
-  figure("O14.event_fault.otherwise", tally.otherwise, 0);
-  figure("O14.event_fault.place_over_rtol", off / 1e-8, 10);
+  expect_figure("O14.event_fault.otherwise", tally.otherwise, 0);
+  expect_figure("O14.event_fault.place_over_rtol", off / 1e-8, 10);
 }
 
 TEST(Solver, EventIsLocated) {

@@ -12,6 +12,7 @@
 
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw {
@@ -19,15 +20,9 @@ namespace {
 
 using predict::Method;
 
-using testing::figure;
+using testing::expect_figure;
 using testing::leg;
 using testing::leg_to;
-
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
 
 class Random {
  public:
@@ -71,7 +66,7 @@ bool in_order(const std::vector<predict::PathEvent>& events) {
 Tally walk_random_paths(Rung model) {
   Random random;
   Tally tally;
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const predict::Tolerances tolerances;
   for (; tally.paths < 400; ++tally.paths) {
     const double nu = random.uniform(0.675, 0.80);
@@ -118,18 +113,18 @@ TEST(Tension, O9NoRowIsTensileOnPathsThatUnjamAndCompressAgain) {
     EXPECT_GT(tally.jammed_again, 300);
     EXPECT_GE(tally.cut, model == Rung::evolution ? 10 : 0);
     const std::string name = to_string(model);
-    figure("O9." + name + ".largest_tension", tally.most_tensile, predict::Tolerances{}.absolute);
-    figure("O9." + name + ".largest_principal_tension", tally.most_tensile_principal, 1e-9);
-    figure("O9." + name + ".events_out_of_order", tally.out_of_order, 0);
-    figure("O8." + name + ".not_numbers", tally.not_numbers, 0);
-    figure("O8." + name + ".ended_early", tally.ended_early, 0);
+    expect_figure("O9." + name + ".largest_tension", tally.most_tensile, predict::Tolerances{}.absolute);
+    expect_figure("O9." + name + ".largest_principal_tension", tally.most_tensile_principal, 1e-9);
+    expect_figure("O9." + name + ".events_out_of_order", tally.out_of_order, 0);
+    expect_figure("O8." + name + ".not_numbers", tally.not_numbers, 0);
+    expect_figure("O8." + name + ".ended_early", tally.ended_early, 0);
   }
 }
 
 TEST(Tension, O9JammedAgainTheStressGrowsFromNothing) {
   // Uniaxial compression of an unjammed state: P grows from zero, and s_dev, which Eq. (16) draws towards a mean of s_max
   // and a2 F_dev, stays below the larger of the two; both are largest at jamming.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path =
       testing::path_from(0.70, {leg(Mode::D2, 0.1), leg_to(Mode::ISO, 0.64, true), leg_to(Mode::UNI, 0.75)});
   const double nu_J = p.isotropic.pressure.nu_c;
@@ -155,7 +150,7 @@ TEST(Tension, O9JammedAgainTheStressGrowsFromNothing) {
 TEST(Tension, O9TensionIsCutOffWhereAPrincipalStressVanishes) {
   // UNI extension after shear: sigma' outlives P. Just before the event the least principal stress is all but zero while
   // P is not; from there on all is zero. Both solvers find one place.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const auto path = testing::path_from(0.75, {leg(Mode::D2, 0.1), leg(Mode::UNI, 0.2, true)});
   LawState<double> start = predict::state_from_law(p, 0.75);
   start.P *= 0.9;
@@ -178,8 +173,8 @@ TEST(Tension, O9TensionIsCutOffWhereAPrincipalStressVanishes) {
     least = std::max(least, principal / start.P);
     EXPECT_EQ(rows.at(1).state.P, 0);
   }
-  figure("O9.least_principal_stress_before_the_cut", least, 1e-6);
-  figure("O9.place_of_the_cut_adams_against_bdf", std::abs(at[0] - at[1]), 1e-9);
+  expect_figure("O9.least_principal_stress_before_the_cut", least, 1e-6);
+  expect_figure("O9.place_of_the_cut_adams_against_bdf", std::abs(at[0] - at[1]), 1e-9);
 }
 
 }  // namespace

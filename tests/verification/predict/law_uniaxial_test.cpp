@@ -13,6 +13,7 @@
 
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw {
@@ -20,15 +21,9 @@ namespace {
 
 using predict::Method;
 
-using testing::figure;
+using testing::expect_figure;
 using testing::leg_to;
 using testing::path_from;
-
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  return p;
-}
 
 using Invariants = std::array<double, 3>;  // P, sigma, F
 
@@ -52,7 +47,7 @@ Invariants by_odeint(const LawParameters<double>& p, Coupling coupling, double n
 }
 
 TEST(Uniaxial, AgreesWithAnIndependentIntegrator) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   double off = 0;
   for (const Coupling coupling : {Coupling::energy, Coupling::single}) {
     for (const double nu_0 : {0.671, 0.695, 0.728}) {
@@ -71,11 +66,11 @@ TEST(Uniaxial, AgreesWithAnIndependentIntegrator) {
       }
     }
   }
-  figure("law.uniaxial_against_odeint", off, 5e-11);  // 50 rtol of BDF
+  expect_figure("law.uniaxial_against_odeint", off, 5e-11);  // 50 rtol of BDF
 }
 
 TEST(Uniaxial, RotatedExperimentGivesTheRotatedResult) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   const Eigen::Matrix3d R = Eigen::AngleAxisd(1.1, Eigen::Vector3d(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
   const auto rotated = [&](const Eigen::Matrix3d& a) { return Eigen::Matrix3d(R * a * R.transpose()); };
 
@@ -105,7 +100,7 @@ TEST(Uniaxial, RotatedExperimentGivesTheRotatedResult) {
                       (tensor_of(b[i].state.F) - rotated(tensor_of(a[i].state.F))).norm(),
                       std::abs(a[i].s_par - b[i].s_par), std::abs(a[i].F_par - b[i].F_par)});
     }
-    figure("law.objectivity_" + to_string(model), off, model == Rung::reduced ? 1e-14 : 1e-9);
+    expect_figure("law.objectivity_" + to_string(model), off, model == Rung::reduced ? 1e-14 : 1e-9);
   }
 }
 
@@ -131,7 +126,7 @@ TEST(Uniaxial, ReducedModelGivesThePublishedCurves) {
                                {.0810, .1173, .1248, .1261, .1254},
                                {.05, .075, .10, .119},
                                {.0619, .0605, .0553, .0505}}};
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::coupled_parameters();
   for (const Curve& curve : curves) {
     const auto path = path_from(curve.nu_0, {leg_to(Mode::UNI, 0.8215)});
     const auto at = [&](double eps_dev) {
