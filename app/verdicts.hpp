@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/paper_claims.hpp"
 #include "fit/describe.hpp"
 
 namespace grainlaw::app {
@@ -27,6 +28,7 @@ struct Verdict {
 struct ModeComparison {
   std::vector<fit::Description> descriptions;
   std::vector<Verdict> verdicts;
+  std::vector<Claim> claims;
 };
 
 /// Curves at .68 (where the rows reach it), .70, .74, .80 and .82; `packings` n is the number of seeds.

@@ -108,6 +108,9 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOpti
       fit::describe(tests_of(dataset, Role::description), calibration.parameters.isotropic.pressure.nu_c, options,
                     session.progress.control(0, "fit of the other modes", session.stop));
   modes.verdicts = verdicts_of(calibration, modes.descriptions, dataset.seeds.size());
+  std::vector<TestRecord> shown = tests;
+  for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
+  modes.claims = claims_of(shown, calibration, modes.descriptions, options.steady_from);
   session.progress.end();
   const OrderedJson origin = provenance(session.command, session.threads, session.stopwatch);
   write_calibration(output / "calibration.json", calibration, options, modes, dataset.digest, origin);

@@ -190,6 +190,26 @@ Verdict verdict_from_json(const Json& object) {
           object.at("verdict")};
 }
 
+OrderedJson claim_to_json(const Claim& c) {
+  return {{"where", c.where},
+          {"statement", c.statement},
+          {"nu", number_or_null(c.nu)},
+          {"ours", c.ours},
+          {"standard_error", number_or_null(c.standard_error)},
+          {"published", number_or_null(c.published)},
+          {"verdict", c.verdict}};
+}
+
+Claim claim_from_json(const Json& object) {
+  return {object.at("where"),
+          object.at("statement"),
+          number_or_nan(object.at("nu")),
+          object.at("ours"),
+          number_or_nan(object.at("standard_error")),
+          number_or_nan(object.at("published")),
+          object.at("verdict")};
+}
+
 }  // namespace
 
 void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
@@ -221,6 +241,8 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
   for (const fit::Description& d : modes.descriptions) descriptions.push_back(description_to_json(d));
   OrderedJson& verdicts = document["verdicts"] = OrderedJson::array();
   for (const Verdict& v : modes.verdicts) verdicts.push_back(verdict_to_json(v));
+  OrderedJson& claims = document["claims"] = OrderedJson::array();
+  for (const Claim& claim : modes.claims) claims.push_back(claim_to_json(claim));
   document["unused_tests"] = calibration.unused_tests;
   document["warnings"] = calibration.warnings;
   document["provenance"] = provenance;
@@ -238,6 +260,7 @@ ModeComparison read_calibration(const std::filesystem::path& file, fit::Calibrat
       read_stages(object, modes.descriptions.back().calibration);
     }
     for (const Json& verdict : document.at("verdicts")) modes.verdicts.push_back(verdict_from_json(verdict));
+    for (const Json& claim : document.at("claims")) modes.claims.push_back(claim_from_json(claim));
     calibration.unused_tests = document.at("unused_tests").get<std::vector<std::string>>();
     calibration.warnings = document.at("warnings").get<std::vector<std::string>>();
   } catch (const Json::exception& error) {

@@ -136,6 +136,7 @@ Page make_page(const ReportInput& input) {
         {"published",
          "Beside the published numbers, mode by mode",
          {table_html(jamming_table(input.modes.verdicts)),
+          folded("Statements: which agree", table_html(claim_table(input.modes.claims))),
           folded("Curves: which agree", table_html(verdict_table(input.modes.verdicts, false))),
           folded("Parameters: which agree", table_html(verdict_table(input.modes.verdicts, true)))}});
   }

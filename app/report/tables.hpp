@@ -15,6 +15,8 @@ enum class CurveGroup { law, steady_state };
 Table curve_comparison(const fit::Calibration& calibration, CurveGroup which);
 /// Every verdict on a parameter, or on a curve, mode by mode.
 Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters);
+/// What the paper says beyond Tables 2 and 3.
+Table claim_table(const std::vector<Claim>& claims);
 /// nu_c of the modes, both ways.
 Table jamming_table(const std::vector<Verdict>& verdicts);
 /// Stages of the fit: window, sizes, costs, termination.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/report/table_cells.hpp"
 #include "app/report/tables.hpp"
@@ -49,6 +50,27 @@ Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters) {
     row.push_back(plain(fixed(v.distance, 1)));
     row.push_back(plain(v.verdict));
     table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table claim_table(const std::vector<Claim>& claims) {
+  const auto number_of = [&](const char* verdict) {
+    return std::count_if(claims.begin(), claims.end(), [&](const Claim& c) { return c.verdict == verdict; });
+  };
+  Table table;
+  table.caption = fmt::format(
+      "What the paper says beyond Tables 2 and 3: {} agree, {} differ, {} are undecided. Without a published value the "
+      "sign is said: ours above zero",
+      number_of("agrees"), number_of("differs"), number_of("undecided"));
+  table.source = "calibration.json";
+  table.columns = {words(plain("where")),        words(plain("what")),
+                   quantity(notation("{ν}")),    quantity(plain("ours ± standard error")),
+                   quantity(plain("published")), words(plain("verdict"))};
+  for (const Claim& c : claims) {
+    table.rows.push_back({plain(c.where), plain(c.statement), plain(std::isnan(c.nu) ? "" : fixed(c.nu, 3)),
+                          plain(with_error(c.ours, c.standard_error)),
+                          std::isnan(c.published) ? plain("> 0") : number(c.published), plain(c.verdict)});
   }
   return table;
 }
