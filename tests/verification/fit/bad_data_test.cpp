@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -127,12 +128,15 @@ TEST(BadData, F7OutliersAreFlaggedByTestAndColumn) {
   }
 }
 
-// A tenth of the rows of every shear test off by 0.2 to one side: squares follow them, Huber's loss hardly.
+// A tenth of the rows of every shear test off by 0.2 to one side: squares follow them, Huber's loss hardly. Without the
+// tests of several segments, for which Huber's loss would take a minute.
 TEST(BadData, F7HuberLossIsHardlyMovedByOutliers) {
   std::mt19937_64 engine(5);
   const Throw& thrown = throws()[3];
   ASSERT_EQ(std::string(thrown.column), "s_par");
-  std::vector<TestRecord> tests = records();
+  std::vector<TestRecord> undisturbed = records();
+  std::erase_if(undisturbed, [](const TestRecord& test) { return test.path.segments.size() > 1; });
+  std::vector<TestRecord> tests = undisturbed;
   for (TestRecord& test : tests) {
     if (is_isotropic_unloading(test)) continue;
     for (std::size_t i = 1; i < test.rows.size(); ++i) {
@@ -144,11 +148,13 @@ TEST(BadData, F7HuberLossIsHardlyMovedByOutliers) {
     options.loss = loss;
     const Calibration c = calibrate(data, options, {});
     int lightened = 0;
-    for (const TestResidual& t : c.stages.back().tests) lightened += t.rows_lightened;
+    const auto evolution =
+        std::find_if(c.stages.begin(), c.stages.end(), [](const Stage& stage) { return stage.name == "evolution"; });
+    for (const TestResidual& t : evolution->tests) lightened += t.rows_lightened;
     EXPECT_EQ(lightened > 0, loss == Loss::huber);
     return c.parameters.stress_ratio_max.value(0.70, c.parameters.shear_nu_c);
   };
-  const double clean = s_max(records(), Loss::squares);
+  const double clean = s_max(undisturbed, Loss::squares);
   const double squares = std::abs(s_max(tests, Loss::squares) - clean);
   EXPECT_GT(squares, 0.05 * clean);
   expect_figure("F7.outliers_huber_over_squares", std::abs(s_max(tests, Loss::huber) - clean) / squares, 0.1);
