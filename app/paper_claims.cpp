@@ -94,7 +94,7 @@ class Claims {
       const std::vector<double> d = differences(tests, value, other->second, value);
       const Mean mean = mean_of(d);
       if (d.empty()) continue;
-      all.push_back({where, statement, static_cast<double>(density) * 1e-6, mean.value, mean.standard_error, 0, ""});
+      all.push_back({where, statement, static_cast<double>(density) / 1e6, mean.value, mean.standard_error, 0, ""});
       judge_equal(all.back(), d.size());
     }
   }
@@ -152,7 +152,7 @@ void add_branches(const std::vector<TestRecord>& tests, double steady_from, Clai
     const auto other = unloading.find(density);
     if (other == unloading.end()) continue;
     const auto d = differences(on_loading, first(&Observation::C_star), other->second, first(&Observation::C_star));
-    claims.add("Fig. 4", "C* before shear: loading branch above unloading branch", static_cast<double>(density) * 1e-6,
+    claims.add("Fig. 4", "C* before shear: loading branch above unloading branch", static_cast<double>(density) / 1e6,
                mean_of(d), d.size());
   }
   claims.add_equal("Fig. 5", "steady C* in D2: the same from both branches (difference)", loading, unloading,
@@ -165,7 +165,7 @@ void add_branches(const std::vector<TestRecord>& tests, double steady_from, Clai
     std::vector<double> d =
         differences(lowest, steady(&Observation::P_star, steady_from), lowest, first(&Observation::P_star));
     for (double& x : d) x *= sign;
-    claims.add("Fig. 8", statement, static_cast<double>(density) * 1e-6, mean_of(d), d.size());
+    claims.add("Fig. 8", statement, static_cast<double>(density) / 1e6, mean_of(d), d.size());
   };
   drift(unloading, 1, "P* in D2 from the unloading branch: rises at the lowest density");
   drift(loading, -1, "P* in D2 from the loading branch: falls at the lowest density");
