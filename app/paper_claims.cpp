@@ -240,6 +240,20 @@ void add_orders(const fit::Calibration& iso, const std::vector<fit::Description>
   claims.add("Fig. 10", where + "UNI above D2", kNaN, u - at(&iso, scaled_steady, kScaledAt), packings);
 }
 
+/// Eq. (19): one A* = a0 F_dev in both rows; ours are two, a B* F_dev. The error of B* is small beside that of a.
+void add_anisotropy(const fit::Calibration& c, std::size_t packings, Claims& claims) {
+  constexpr double nu = 0.74;
+  if (!fit::has_values(c, "pressure") || nu < c.nu_min || nu > c.nu_max) return;
+  const double B = c.parameters.isotropic.B_star(nu);
+  for (const auto& [name, statement] :
+       {std::pair{"anisotropy.a1", "A1*/F_dev, the pressure's row; the paper has one A"},
+        {"anisotropy.a2", "A2*/F_dev, the row of deviatoric stress; the paper has one A"}}) {
+    const fit::Estimate& a = c.estimates[parameter_index(name)];
+    if (a.status == fit::Status::not_identified) continue;
+    claims.add("Eq. 19", statement, nu, {a.value * B, a.standard_error * B}, packings, {0.137, 0.0005});
+  }
+}
+
 }  // namespace
 
 void judge(Claim& claim, Printed printed, std::size_t packings) {
@@ -279,6 +293,7 @@ std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const fit::Ca
   add_orders(calibration, descriptions, seeds.size(), claims);
   add_branches(tests, steady_from, claims);
   add_collapse(tests, steady_from, claims);
+  add_anisotropy(calibration, seeds.size(), claims);
   return claims.all;
 }
 

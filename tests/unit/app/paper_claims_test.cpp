@@ -119,6 +119,9 @@ TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
 TEST(PaperClaims, JammingDensitiesAreOrdered) {
   fit::Calibration c = fit::nothing_known();
   c.parameters = published_parameters("ISO");
+  c.parameters.anisotropy.a2 = 1.18;
+  c.nu_min = 0.68;
+  c.nu_max = 0.82;
   fit::Description uni{"UNI", fit::nothing_known()}, d3{"D3", fit::nothing_known()};
   uni.calibration.parameters = published_parameters("UNI");
   d3.calibration.parameters = published_parameters("D3");
@@ -140,6 +143,9 @@ TEST(PaperClaims, JammingDensitiesAreOrdered) {
     const Claim& order = find(claims, "nu_c of P*: ISO above UNI");
     EXPECT_NEAR(order.ours, 0.6649 - 0.6619, 1e-12);
     EXPECT_NEAR(order.standard_error, error * std::numbers::sqrt2, 1e-3 * error);
+    const Claim& coupling = find(claims, "A2*/F_dev, the row of deviatoric stress; the paper has one A");
+    EXPECT_NEAR(coupling.ours, c.parameters.anisotropy.a2 * c.parameters.isotropic.B_star(0.74), 1e-12);
+    EXPECT_EQ(coupling.verdict, "differs");
     for (const char* statement : {"nu_c of P*: ISO above UNI", "nu_c of P*: UNI above D2", "nu_c of C*: ISO above D2"})
       EXPECT_EQ(find(claims, statement).verdict, verdict) << statement;
   }
