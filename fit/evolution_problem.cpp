@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/evolution_fit.hpp"
+#include "fit/trajectory_misfit.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -32,32 +33,6 @@ double least_nu(const std::vector<Trajectory>& trajectories) {
   }
   return least;
 }
-
-/// model - data of one trajectory: first all P, then s along each axis, then F along each axis.
-struct TrajectoryMisfit {
-  Trajectory trajectory;
-  LawParameters<double> fixed;
-  std::vector<std::size_t> index;  // in parameter_table(), of each free parameter
-  Coupling coupling;
-  double max_step;
-
-  template <class T>
-  bool operator()(const T* x, T* misfit) const {
-    LawParameters<T> p = cast<T>(fixed);
-    const auto field = fields(p);
-    for (std::size_t k = 0; k < index.size(); ++k) *field[index[k]] = x[k];
-    const std::size_t rows = trajectory.rows.size(), axes = trajectory.axes.size();
-    return integrate<T>(trajectory, p, Rung::evolution, coupling, max_step, [&](std::size_t i, const LawState<T>& y) {
-      const LawState<double>& data = trajectory.rows[i].data;
-      misfit[i] = y.P - data.P;
-      for (std::size_t a = 0; a < axes; ++a) {
-        const Deviator<T> n = trajectory.axes[a].template cast<T>();
-        misfit[rows * (1 + a) + i] = y.sigma.dot(n) / y.P - data.sigma.dot(trajectory.axes[a]) / data.P;
-        misfit[rows * (1 + axes + a) + i] = y.F.dot(n) - data.F.dot(trajectory.axes[a]);
-      }
-    });
-  }
-};
 
 std::string quantity_name(char symbol, std::size_t axis) {
   return axis == 0 ? std::string(1, symbol) + "_par" : std::string(1, symbol) + "_axis" + std::to_string(axis + 1);
@@ -96,8 +71,9 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
         [&](const LawState<double>& y) { return y.F.dot(n); },
         [&](const TrajectoryRow& row) { return row.weight / options.fabric_scale; });
   }
-  block.evaluate = differentiated<Jet>(TrajectoryMisfit{t, fixed, index, options.coupling, options.max_step},
-                                       static_cast<int>(index.size()), block.rows());
+  block.evaluate = differentiated<Jet>(
+      TrajectoryMisfit{t, fixed, index, Rung::evolution, options.coupling, options.max_step, t.axes.size()},
+      static_cast<int>(index.size()), block.rows());
   return block;
 }
 

@@ -8,6 +8,7 @@
 
 #include "fit/evolution_fit.hpp"
 #include "fit/profile.hpp"
+#include "fit/trajectory_misfit.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -25,31 +26,6 @@ std::vector<std::string> free_names(bool volumetric) {
   if (volumetric) names.insert(names.end(), {"memory.c_F", "memory.a2"});
   return names;
 }
-
-/// model - data of one trajectory along N of its test's first shear: all P, then s, then F.
-struct MemoryMisfit {
-  Trajectory trajectory;
-  LawParameters<double> fixed;
-  std::vector<std::size_t> index;  // in parameter_table(), of each free parameter
-  double max_step;
-
-  template <class T>
-  bool operator()(const T* x, T* misfit) const {
-    LawParameters<T> p = cast<T>(fixed);
-    const auto field = fields(p);
-    for (std::size_t k = 0; k < index.size(); ++k) *field[index[k]] = x[k];
-    const std::size_t rows = trajectory.rows.size();
-    const Deviator<double>& axis = trajectory.axes.front();
-    const Deviator<T> n = axis.template cast<T>();
-    return integrate<T>(trajectory, p, Rung::memory, Coupling::energy, max_step,
-                        [&](std::size_t i, const LawState<T>& y) {
-                          const LawState<double>& data = trajectory.rows[i].data;
-                          misfit[i] = y.P - data.P;
-                          misfit[rows + i] = y.sigma.dot(n) / y.P - data.sigma.dot(axis) / data.P;
-                          misfit[2 * rows + i] = y.F.dot(n) - data.F.dot(axis);
-                        });
-  }
-};
 
 bool constant_volume(const Trajectory& t) { return std::abs(t.direction.dx) <= 1e-12; }
 
@@ -89,8 +65,9 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
       t, "F_par", shear ? options.lag_window : all, block,
       [](const Trajectory& of, const LawState<double>& y) { return y.F.dot(of.axes.front()); },
       [](const LawState<double>&, const CalibrationOptions& o) { return o.fabric_scale; }, options);
-  block.evaluate = differentiated<Jet>(MemoryMisfit{t, fixed, index, options.max_step}, static_cast<int>(index.size()),
-                                       block.rows());
+  block.evaluate =
+      differentiated<Jet>(TrajectoryMisfit{t, fixed, index, Rung::memory, Coupling::energy, options.max_step, 1},
+                          static_cast<int>(index.size()), block.rows());
   return block;
 }
 
