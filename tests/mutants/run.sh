@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # tests/mutants/run.sh [--list | --check | --only IDS | --sample N]: do the tests notice faults in physics and law?
 # Sows each fault of tests/mutants/*.txt (--sample: N of them, evenly spaced; --only: those that match a pattern like
-# 'dem.lanes_*') into a copy of HEAD in build/mutants/ and runs the default suite up to its first failure, the room's
-# own tests first. Prints "mutant ID caught|survived|invalid by TEST" and at last "mutants.caught N of M"; exit code 0
-# if none is invalid and 95 % are caught. Finished ones are kept in build/mutants/results.txt and not run again for the
-# same sources. --check: do all apply and compile?
+# 'dem.lanes_*') into a copy of HEAD in build/mutants/ and runs the default suite but its checks of the sources up to its
+# first failure, the room's own tests first. Prints "mutant ID caught|survived|invalid by TEST" and at last
+# "mutants.caught N of M"; exit code 0 if none is invalid and 95 % are caught. Finished ones are kept in
+# build/mutants/results.txt and not run again for the same sources. --list: prints them, if all fit the sources as they
+# are; --check: do all compile?
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -14,7 +15,7 @@ case $#:${1:-} in
   0:) ;;
   1:--list | 1:--check) mode=${1#--} ;;
   2:--only | 2:--sample) mode=${1#--} argument=$2 ;;
-  *) sed -n 's/^# //; 2,7p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+  *) sed -n 's/^# //; 2,8p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 work=$root/build/mutants
 tree=$work/tree            # a clone of its own, so that nothing here can touch the sources
@@ -121,7 +122,7 @@ run_executable() { # log name [precision]
 run_suite() { # log
   local status=0
   first_failure=
-  (ulimit -v "$memory_kB" && ctest --test-dir "$build" -LE '^long$' --stop-on-failure --output-on-failure --parallel "$jobs" --timeout "$seconds") \
+  (ulimit -v "$memory_kB" && ctest --test-dir "$build" -LE '^(long|architecture)$' --stop-on-failure --output-on-failure --parallel "$jobs" --timeout "$seconds") \
     >"$1" 2>&1 || status=$?
   ((status)) || return 0
   first_failure=$(sed -n '/^The following tests FAILED:/,$ s/^[[:space:]]*[0-9]* - \([^ ]*\).*/\1/p' "$1" | head -n 1)
@@ -163,6 +164,8 @@ prove_clean() {
 read_list
 select_mutants
 if [[ $mode == list ]]; then
+  tree=$root
+  for i in "${selected[@]}"; do replaced "$i" >/dev/null; done
   for i in "${selected[@]}"; do printf '%s %s: %s\n' "${ids[i]}" "${files[i]}" "${reasons[i]}"; done
   exit 0
 fi
