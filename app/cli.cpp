@@ -78,11 +78,16 @@ void add_calibrate(CLI::App& app, Common& common, Task& task) {
       command
           ->add_option(
               "--target-error", options->target_error,
-              "add packings until the prediction along --for is known to this, e.g. 0.02: half width of its 95 % "
-              "band over the largest value")
+              "plan the cheapest runs after which the prediction along --for is known to this, e.g. 0.02: half width "
+              "of its 95 % band with what rate, step and size do, over the largest value; overrides N, seeds, rate, "
+              "step, densities and shear strain of SPEC")
           ->check(CLI::Range(1e-4, 1.0));
   command->add_option("--for", options->target_path, "PATH.json of that prediction")->needs(target);
-  command->add_option("--max-cost", options->max_cost, "seconds after which no packings are added")
+  command->add_option("--quantity", options->quantities, "what must be known: P_star, s_par, F_par; default: all")
+      ->needs(target)
+      ->delimiter(',')
+      ->check(CLI::IsMember({"P_star", "s_par", "F_par"}));
+  command->add_option("--max-cost", options->max_cost, "seconds that the pilot and all runs of the plan may take")
       ->needs(target)
       ->check(CLI::Range(0.0, 1e9));
   command->add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")

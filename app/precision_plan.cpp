@@ -1,158 +1,158 @@
 #include "app/precision_plan.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 
-#include "app/uncertainty.hpp"
 #include "model/error.hpp"
 #include "model/student.hpp"
-#include "predict/predict.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-constexpr int kPointsPerSegment = 100;
-constexpr int kLeastPackings = 3;    // two say nearly nothing of their scatter: t = 12.7
-constexpr int kMostPackings = 1000;  // as many as a SPEC has seeds
-constexpr int kGrowth = 3;           // at most so many times the packings in one round: few know their own error badly
-constexpr double kSlack = 1.05;      // packings beyond those needed by the estimate, which is itself uncertain
+constexpr double kRateOrder = 0.6;
+constexpr int kLeastPackings = 3;  // two say nearly nothing of their scatter: t = 12.7
 
-Rung richest(const fit::Calibration& c) {
-  if (fit::has_values(c, "memory")) return Rung::memory;
-  const char* coupling = c.coupling == Coupling::energy ? "anisotropy.a2" : "anisotropy.a0";
-  return c.estimates[parameter_index(coupling)].status != fit::Status::not_identified ? Rung::evolution : Rung::reduced;
+double mean_factor(const PlanSettings& s) {
+  return student_95(s.packings - 1) / std::sqrt(s.packings * static_cast<double>(s.particles));
 }
 
-/// Name of a test without its seed: runs of one path on several packings.
-std::string path_name(const std::string& test) { return test.substr(0, test.rfind("-s")); }
-
-double discrepancy_of(const fit::Calibration& c, Rung rung) {
-  struct Bias {
-    double sum = 0, largest = 0;
-    int packings = 0;
-  };
-  std::map<std::string, std::map<std::string, Bias>> biases;  // by quantity and path
-  for (const fit::Stage& stage : c.stages) {
-    if (stage.name != to_string(rung)) continue;
-    for (const fit::TestResidual& r : stage.tests) {
-      if (!r.in_cost || r.rows == 0) continue;
-      Bias& bias = biases[r.quantity][path_name(r.test)];
-      bias.sum += r.bias;
-      bias.largest = std::max(bias.largest, r.max_abs_data);
-      ++bias.packings;
-    }
-  }
-  double worst = 0;
-  for (const auto& [quantity, paths] : biases) {
-    double squares = 0;
-    for (const auto& [path, bias] : paths) {
-      const double relative = bias.sum / bias.packings / bias.largest;
-      squares += relative * relative;
-    }
-    worst = std::max(worst, std::sqrt(squares / static_cast<double>(paths.size())));
-  }
-  return worst;
+/// g of the densities and the strain of `settings`.
+double steady_factor(const std::vector<SteadyScatter>& scatter, const PlanSettings& settings) {
+  const auto at = std::find_if(scatter.begin(), scatter.end(), [&](const SteadyScatter& s) {
+    return std::abs(s.shear_strain - settings.shear_strain) < 1e-9;
+  });
+  if (at == scatter.end()) throw Error("plan: no scatter is known for a shear strain that it considers");
+  return std::sqrt(at->between + at->within / settings.densities);
 }
 
-void add_packings(Spec& spec, int wanted) {
-  std::uint64_t next = *std::max_element(spec.seeds.begin(), spec.seeds.end());
-  while (static_cast<int>(spec.seeds.size()) < wanted) spec.seeds.push_back(++next);
+double seconds_for(const PlanSettings& settings, const Work& work, const CostRates& rates,
+                   const PlanSettings& finished) {
+  const int missing = settings.packings - (same_packings(settings, finished) ? finished.packings : 0);
+  return missing * ((work.preparation + work.tests) * rates.particle_step + work.relaxed * rates.relaxed) +
+         settings.packings * work.fitted_tests * rates.fitted_test;
+}
+
+/// Smallest n in [low, high] for which `is` holds; it holds from some n on, at `high` at the latest.
+template <class Predicate>
+int first_from(int low, int high, const Predicate& is) {
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+    if (is(middle)) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  return low;
 }
 
 }  // namespace
 
-PredictionError prediction_error(const fit::Calibration& c, const Path& path) {
-  PredictionError error;
-  error.rung = richest(c);
-  error.discrepancy = discrepancy_of(c, error.rung);
-  error.half_width = std::numeric_limits<double>::quiet_NaN();
-  const predict::Uncertainty uncertainty = uncertainty_of(c);
-  const auto segments = resolve(path);
-  predict::Prediction prediction = predict::predict(
-      error.rung, c.parameters, c.coupling, segments, predict::state_from_law(c.parameters, path.nu),
-      predict::uniform_points(segments, kPointsPerSegment), {}, {}, {}, {uncertainty.parameters, true});
-  predict::add_bands(c.parameters, uncertainty, prediction);
-  const auto judge = [&](const char* quantity, auto value, double predict::RowBand::*band) {
-    double largest = 0, width = std::numeric_limits<double>::quiet_NaN();
-    for (const predict::PredictedRow& row : prediction.rows) {
-      if (std::isfinite(value(row))) largest = std::max(largest, std::abs(value(row)));
-      if (std::isfinite(row.mean.*band)) width = std::fmax(width, row.mean.*band);
-    }
-    if (!(largest > 0) || !std::isfinite(width) || width / largest <= error.half_width) return;
-    error.half_width = width / largest;
-    error.quantity = quantity;
-  };
-  judge(
-      "P_star", [](const auto& row) { return row.state.P; }, &predict::RowBand::P);
-  judge(
-      "s_par", [](const auto& row) { return row.s_par; }, &predict::RowBand::s_par);
-  judge(
-      "F_par", [](const auto& row) { return row.F_par; }, &predict::RowBand::F_par);
+bool same_packings(const PlanSettings& a, const PlanSettings& b) {
+  return a.particles == b.particles && a.strain_rate == b.strain_rate && a.time_step_fraction == b.time_step_fraction &&
+         a.densities == b.densities && a.shear_strain == b.shear_strain;
+}
+
+std::string to_string(Cause cause) {
+  return cause == Cause::strain_rate ? "strain_rate" : cause == Cause::time_step ? "time_step" : "size";
+}
+
+double shape(Cause cause, const PlanSettings& settings, const Scale& scale) {
+  const PlanSettings& pilot = scale.pilot;
+  switch (cause) {
+    case Cause::strain_rate:
+      return std::pow(settings.strain_rate / pilot.strain_rate, kRateOrder) -
+             std::pow(scale.wanted_rate / pilot.strain_rate, kRateOrder);
+    case Cause::time_step:
+      return std::pow(settings.time_step_fraction / pilot.time_step_fraction, 2);
+    case Cause::size:
+      break;
+  }
+  return static_cast<double>(pilot.particles) / static_cast<double>(settings.particles);
+}
+
+Bias bias_of(double difference, double standard_error, double apart) {
+  const double excess = difference * difference - standard_error * standard_error;
+  return {difference, standard_error, std::sqrt(std::max(0.0, excess)) / apart, 2 * standard_error / apart};
+}
+
+Work scaled(const Work& work, const PlanSettings& at, const PlanSettings& settings) {
+  const double size = static_cast<double>(settings.particles) / static_cast<double>(at.particles);
+  const double steps =
+      size * at.strain_rate / settings.strain_rate * at.time_step_fraction / settings.time_step_fraction;
+  return {work.preparation * steps, work.tests * steps, work.relaxed * size, work.fitted_tests};
+}
+
+PlanFindings rebased(PlanFindings findings, const PlanSettings& settings, const std::vector<double>& half_widths) {
+  for (std::size_t q = 0; q < findings.quantities.size(); ++q) findings.quantities[q].half_width = half_widths.at(q);
+  findings.reference = settings;
+  return findings;
+}
+
+double ExpectedError::total() const {
+  double squares = half_width * half_width;
+  for (const double bias : biases) squares += bias * bias;
+  return std::sqrt(squares);
+}
+
+ExpectedError expected(const QuantityFindings& quantity, const PlanFindings& findings, const PlanSettings& settings) {
+  const PlanSettings& reference = findings.reference;
+  ExpectedError error;
+  error.quantity = quantity.quantity;
+  error.half_width = std::isfinite(quantity.half_width) ? quantity.half_width : 1;
+  error.half_width *= mean_factor(settings) / mean_factor(reference);
+  const double g0 = steady_factor(quantity.scatter, reference);
+  if (g0 > 0) error.half_width *= steady_factor(quantity.scatter, settings) / g0;
+  for (std::size_t i = 0; i < kCauses.size(); ++i)
+    error.biases[i] = quantity.biases[i].slope * shape(kCauses[i], settings, findings.scale);
   return error;
 }
 
-int packings_needed(double half_width, int packings, double target) {
-  const auto factor = [](int n) { return student_95(n - 1) / std::sqrt(n); };
-  int n = 2;
-  while (n < kMostPackings && half_width * factor(n) / factor(packings) > target) ++n;
-  return n;
+Candidate candidate_with(const PlanSettings& settings, const Work& work, const PlanFindings& findings,
+                         const PlanGoal& goal) {
+  Candidate c{settings, work, {}, 0, seconds_for(settings, work, findings.rates, goal.finished), false};
+  for (const QuantityFindings& quantity : findings.quantities) {
+    c.errors.push_back(expected(quantity, findings, settings));
+    c.error = std::max(c.error, c.errors.back().total());
+  }
+  c.reaches = c.error <= goal.error;
+  return c;
 }
 
-std::string to_string(PlanOutcome outcome) {
-  switch (outcome) {
-    case PlanOutcome::met:
-      return "met";
-    case PlanOutcome::discrepancy:
-      return "the law's own discrepancy is larger than the target";
-    case PlanOutcome::max_cost:
-      return "the allowed time ended";
-    case PlanOutcome::no_band:
-      break;
-  }
-  return "the prediction has no band";
+std::optional<Candidate> candidate(const PlanSettings& settings, const Work& work, const PlanFindings& findings,
+                                   const PlanGoal& goal) {
+  const auto with = [&](int packings) {
+    PlanSettings s = settings;
+    s.packings = packings;
+    return candidate_with(s, work, findings, goal);
+  };
+  const int first =
+      same_packings(settings, goal.finished) ? std::max(kLeastPackings, goal.finished.packings + 1) : kLeastPackings;
+  const auto too_long = [&](int n) {
+    PlanSettings s = settings;
+    s.packings = n;
+    return n > goal.max_packings || seconds_for(s, work, findings.rates, goal.finished) > goal.seconds_left;
+  };
+  if (too_long(first)) return std::nullopt;
+  const int end = first_from(first, goal.max_packings + 1, too_long);
+  const int needed = first_from(first, end, [&](int n) { return n == end || with(n).reaches; });
+  if (needed < end) return with(needed);
+  return with(std::isfinite(goal.seconds_left) ? end - 1 : first);
 }
 
-PrecisionPlan reach(const PrecisionTarget& target, Spec spec,
-                    const std::function<fit::Calibration(const Spec&)>& calibrate_with,
-                    const std::function<double()>& seconds, const std::function<void(const std::string&)>& log) {
-  add_packings(spec, kLeastPackings);
-  PrecisionPlan plan;
-  while (true) {
-    const int packings = static_cast<int>(spec.seeds.size());
-    log(fmt::format("round {}: {} packings of {} spheres", plan.rounds.size() + 1, packings,
-                    spec.preparation.packing.particles));
-    const fit::Calibration calibration = calibrate_with(spec);
-    plan.rounds.push_back({packings, seconds(), prediction_error(calibration, target.path)});
-    const PlanRound& last = plan.rounds.back();
-    const auto ended = [&](PlanOutcome outcome) {
-      plan.outcome = outcome;
-      return plan;
-    };
-    if (!std::isfinite(last.error.half_width)) return ended(PlanOutcome::no_band);
-    log(fmt::format(
-        "the {} rung knows {} to {:.2f} % with {} packings after {:.0f} s; wanted {:.2f} %; what the fit leaves "
-        "over is {:.2f} %",
-        to_string(last.error.rung), last.error.quantity, 100 * last.error.half_width, packings, last.seconds,
-        100 * target.error, 100 * last.error.discrepancy));
-    if (last.error.half_width <= target.error) {
-      return ended(last.error.discrepancy <= target.error ? PlanOutcome::met : PlanOutcome::discrepancy);
+std::optional<std::size_t> choose(const std::vector<Candidate>& candidates, const PlanGoal& goal) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& c = candidates[i];
+    if (!c.reaches && (!std::isfinite(goal.seconds_left) || !(c.error < goal.error_now))) continue;
+    if (!best) {
+      best = i;
+      continue;
     }
-    if (last.error.discrepancy > target.error) return ended(PlanOutcome::discrepancy);
-    int wanted = packings_needed(last.error.half_width, packings, target.error);
-    wanted = std::clamp(static_cast<int>(std::ceil(kSlack * wanted)), packings + 1, kGrowth * packings);
-    if (target.max_seconds > 0) {
-      const double per_packing = last.seconds / packings;
-      wanted = std::min(wanted, packings + static_cast<int>((target.max_seconds - last.seconds) / per_packing));
-    }
-    if (wanted <= packings || packings >= kMostPackings) return ended(PlanOutcome::max_cost);
-    log(fmt::format("next: {} packings, about {:.0f} s more", wanted, (wanted - packings) * last.seconds / packings));
-    add_packings(spec, std::min(wanted, kMostPackings));
+    const Candidate& b = candidates[*best];
+    if (c.reaches != b.reaches ? c.reaches : c.reaches ? c.seconds < b.seconds : c.error < b.error) best = i;
   }
+  return best;
 }
 
 }  // namespace grainlaw::app

@@ -1,4 +1,12 @@
-# Sourced by the examples' run.sh: the chain on the inputs of one folder.
+# Sourced by the examples' run.sh: the build, and the chain on the inputs of one folder.
+
+# build_grainlaw: installs what is missing and builds Release, in the top folder, where it leaves the shell.
+build_grainlaw() {
+  cd "$(dirname "${BASH_SOURCE[0]}")/.."
+  ./install-packages.sh
+  cmake --preset release --log-level=WARNING
+  cmake --build build/release --target grainlaw --parallel "$(nproc)"
+}
 
 # run_chain INPUTS OUT OPTION...: installs what is missing, builds Release, then spec.json -> law, every other JSON file of
 # INPUTS -> prediction with these options, all of it -> report. The summary goes to standard output.
@@ -7,11 +15,7 @@ run_chain() {
   inputs=$(realpath "$1")
   out=$(realpath -m "$2")
   shift 2
-  cd "$(dirname "${BASH_SOURCE[0]}")/.."
-
-  ./install-packages.sh
-  cmake --preset release --log-level=WARNING
-  cmake --build build/release --target grainlaw --parallel "$(nproc)"
+  build_grainlaw
 
   mkdir -p "$out"
   cost=$(mktemp)

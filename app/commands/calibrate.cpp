@@ -7,15 +7,13 @@
 #include <iterator>
 
 #include "app/adopted_dataset.hpp"
+#include "app/commands/calibrate_target.hpp"
 #include "app/dataset_runs.hpp"
 #include "app/files/calibration_file.hpp"
 #include "app/files/dataset.hpp"
 #include "app/files/parameters_file.hpp"
-#include "app/files/path_file.hpp"
-#include "app/files/path_json.hpp"
 #include "app/files/spec_file.hpp"
 #include "app/output_folder.hpp"
-#include "app/precision_plan.hpp"
 #include "app/report/report.hpp"
 #include "app/verdicts.hpp"
 #include "fit/calibrate.hpp"
@@ -123,48 +121,6 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOpti
   return calibration;
 }
 
-OrderedJson plan_to_json(const PrecisionPlan& plan, const PrecisionTarget& target) {
-  OrderedJson rounds = OrderedJson::array();
-  for (const PlanRound& r : plan.rounds) {
-    rounds.push_back({{"packings", r.packings},
-                      {"seconds", r.seconds},
-                      {"model", to_string(r.error.rung)},
-                      {"quantity", r.error.quantity},
-                      {"half_width", number_or_null(r.error.half_width)},
-                      {"discrepancy", number_or_null(r.error.discrepancy)}});
-  }
-  return {{"format", "grainlaw plan"},
-          {"format_version", 1},
-          {"target_error", target.error},
-          {"path", path_to_json(target.path)},
-          {"max_seconds", target.max_seconds},
-          {"outcome", to_string(plan.outcome)},
-          {"rounds", rounds}};
-}
-
-std::string text_of(const PrecisionPlan& plan, const PrecisionTarget& target, const fs::path& output) {
-  std::string text =
-      fmt::format("{:>8} {:>9} {:>11} {:>9} {:>11}\n", "packings", "seconds", "half width", "of", "discrepancy");
-  for (const PlanRound& r : plan.rounds) {
-    text += fmt::format("{:8} {:9.0f} {:10.2f}% {:>9} {:10.2f}%\n", r.packings, r.seconds, 100 * r.error.half_width,
-                        r.error.quantity, 100 * r.error.discrepancy);
-  }
-  return text + fmt::format("wanted {:.2f} %: {}\n{}\n", 100 * target.error, to_string(plan.outcome),
-                            (output / "parameters.json").string());
-}
-
-PrecisionTarget target_of(const CalibrateOptions& options) {
-  if (!options.dataset.empty())
-    throw InvalidInput("calibrate: --target-error adds packings, which --dataset cannot; leave one of them out");
-  if (options.target_path.empty())
-    throw InvalidInput("calibrate: --target-error is that of a prediction; give its PATH with --for");
-  const PathFile path = read_path(options.target_path);
-  if (law_decides(path.path))
-    throw InvalidInput(fmt::format("{}: segments: leave the strain to the law; a target needs a path of given strain",
-                                   options.target_path.string()));
-  return {*options.target_error, path.path, options.max_cost};
-}
-
 }  // namespace
 
 ExitCode calibrate(const CalibrateOptions& options, Session& session) {
@@ -197,24 +153,24 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   make_output_folder(options.output);
   const fs::path dataset_output = make_subfolder(options.output, "dataset");
   RunCounts counts;
-  Dataset dataset;
-  const auto simulate_and_fit = [&](const Spec& with) {
+  const auto simulate = [&](const Spec& with, const fs::path& folder) {
+    const RunStore store(options.output, "runs");
+    Dataset result = run_planned(plan(with), Json(spec_to_json(with)), folder, store, session, counts);
+    log_warnings(result, session);
+    return result;
+  };
+  const auto simulate_and_fit = [&](const Spec& with, Dataset& result, double& fit_seconds) {
     const OrderedJson document = spec_to_json(with);
     remove_results_of_others(options.output, json_text(document));
     write_json(options.output / "spec.resolved.json", document);
-    dataset =
-        run_planned(plan(with), Json(document), dataset_output, RunStore(options.output, "runs"), session, counts);
-    log_warnings(dataset, session);
-    return fit_and_save(dataset, fit_options, options.output, session);
+    result = simulate(with, dataset_output);
+    const Stopwatch stopwatch;
+    fit::Calibration calibration = fit_and_save(result, fit_options, options.output, session);
+    fit_seconds = stopwatch.seconds();
+    return calibration;
   };
-  if (target) {
-    const PrecisionPlan reached = reach(
-        *target, *spec, simulate_and_fit, [&] { return session.stopwatch.seconds(); },
-        [&](const std::string& text) { session.progress.log(text); });
-    write_json(options.output / "plan.json", plan_to_json(reached, *target));
-    print_result(session.json ? json_text(plan_to_json(reached, *target)) : text_of(reached, *target, options.output));
-    return reached.outcome == PlanOutcome::met ? ExitCode::ok : ExitCode::not_converged;
-  }
+  if (target) return calibrate_for(*target, *spec, options, simulate_and_fit, simulate, session);
+  Dataset dataset;
   bool converged = false;
   if (given) {
     remove_results_of_others(options.output, "");
@@ -223,7 +179,8 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
     log_warnings(dataset, session);
     converged = fit_and_save(dataset, fit_options, options.output, session).converged;
   } else {
-    converged = simulate_and_fit(*spec).converged;
+    double fit_seconds = 0;
+    converged = simulate_and_fit(*spec, dataset, fit_seconds).converged;
   }
   print_result(summary_of(options.output, dataset, converged, counts, session));
   return converged ? ExitCode::ok : ExitCode::not_converged;

@@ -57,13 +57,12 @@ void read_covariance(const Json& object, Eigen::MatrixXd& covariance) {
 }
 
 /// True for the alpha of an Eq. (20) whose Q_c is zero: the law does not depend on it.
-bool without_exponential(const ParametersFile& parameters, std::size_t alpha) {
+bool without_exponential(const fit::Calibration& calibration, std::size_t alpha) {
   const ParameterInfo& info = parameter_table()[alpha];
   const std::string name = info.name, group = name.substr(0, name.find('.'));
   if (info.equation != std::string("20")) return false;
   const std::size_t Q_c = parameter_index(group + ".Q_c");
-  return parameters.calibration.estimates[Q_c].status != fit::Status::not_identified &&
-         *fields(parameters.calibration.parameters)[Q_c] == 0;
+  return calibration.estimates[Q_c].status != fit::Status::not_identified && *fields(calibration.parameters)[Q_c] == 0;
 }
 
 }  // namespace
@@ -142,7 +141,7 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   return result;
 }
 
-void require_parameters(const ParametersFile& parameters, Rung model, const std::string& name) {
+std::optional<std::size_t> missing_parameter(const fit::Calibration& calibration, Rung model) {
   std::vector<std::string> needed;
   for (const char* group : {"coordination", "rattlers", "pressure", "shear.nu_c", "stress_ratio_max", "stress_rate",
                             "fabric_max", "fabric_rate"}) {
@@ -153,21 +152,27 @@ void require_parameters(const ParametersFile& parameters, Rung model, const std:
       needed.emplace_back(group);
   }
   if (model != Rung::reduced) {
-    needed.emplace_back(parameters.calibration.coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2");
+    needed.emplace_back(calibration.coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2");
   }
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string parameter = parameter_table()[i].name;
     for (const std::string& group : needed) {
       if (parameter != group && !parameter.starts_with(group + ".")) continue;
-      const fit::Estimate& estimate = parameters.calibration.estimates[i];
-      const bool read = !parameter.ends_with(".alpha") || !without_exponential(parameters, i);
-      if (read && estimate.status == fit::Status::not_identified) {
-        throw InvalidInput(fmt::format(
-            "{}: parameters.{}: is not identified and the {} model needs it{}{}; calibrate with tests that contain it",
-            name, parameter, to_string(model), estimate.note.empty() ? "" : ": ", estimate.note));
-      }
+      const bool read = !parameter.ends_with(".alpha") || !without_exponential(calibration, i);
+      if (read && calibration.estimates[i].status == fit::Status::not_identified) return i;
     }
   }
+  return std::nullopt;
+}
+
+void require_parameters(const ParametersFile& parameters, Rung model, const std::string& name) {
+  const auto missing = missing_parameter(parameters.calibration, model);
+  if (!missing) return;
+  const std::string& note = parameters.calibration.estimates[*missing].note;
+  throw InvalidInput(fmt::format(
+      "{}: parameters.{}: is not identified and the {} model needs it{}{}; calibrate with tests that contain "
+      "it",
+      name, parameter_table()[*missing].name, to_string(model), note.empty() ? "" : ": ", note));
 }
 
 }  // namespace grainlaw::app

@@ -1,25 +1,52 @@
-# calibrate --target-error: packings are added until the band is narrow enough, or the time is up; rounds are kept.
+# calibrate --target-error: a pilot, the cheapest plan, its runs; stops when the error is reached or the time is up.
 set -euo pipefail
 grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
-echo '{"particles": 300, "seeds": [1, 2], "strain_rate": 3000, "rows": 40, "nu_end": 0.67, "densities": [0.70, 0.74, 0.79]}' >spec.json
+cat >spec.json <<'JSON'
+{"particles": 300, "seeds": [5, 1], "strain_rate": 3000, "rows": 40, "nu_end": 0.67, "densities": [0.70, 0.74, 0.79],
+ "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration"},
+           {"mode": "UNI", "density": 0.72, "strain": 0.02, "role": "validation"}]}
+JSON
 echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.2}}]}' >path.json
+target() { "$grainlaw" calibrate spec.json --for path.json --quantity P_star --threads 2 "$@"; }
 
-# three packings first, then at most three times as many, until the band is as narrow as wanted
-"$grainlaw" calibrate spec.json -o loose --target-error 0.9 --for path.json --threads 2 >text 2>log || fail "loose: $(tail -1 log)"
-jq -e '.outcome == "met" and .rounds[0].packings == 3 and .rounds[-1].half_width <= 0.9 and all(.rounds[:-1][]; .half_width > 0.9)
-  and ([.rounds[].packings] | . as $n | all(range(1; length); $n[.] > $n[. - 1] and $n[.] <= 3 * $n[. - 1]))' loose/plan.json >/dev/null ||
+# an error that the pilot reaches
+target -o loose --target-error 0.5 >text 2>log || fail "loose: $(tail -1 log)"
+jq -e '.outcome == "met" and (.rounds | length) == 1 and .rounds[0].settings == .pilot.settings and .candidates == []' loose/plan.json >/dev/null ||
   fail "$(cat loose/plan.json)"
-[[ -s loose/parameters.json ]] && grep -q 'wanted 90.00 %: met' text || fail "$(cat text)"
-[[ $(jq '.seeds | length' loose/spec.resolved.json) == $(jq '.rounds[-1].packings' loose/plan.json) ]] || fail seeds
+jq -e '.rounds[-1] | .error as $e | .quantities[0] | .quantity == "P_star" and .error == $e and
+  ((.half_width * .half_width + .bias_strain_rate * .bias_strain_rate + .bias_time_step * .bias_time_step + .bias_size * .bias_size
+    | sqrt) / $e - 1 | fabs) < 1e-9' loose/plan.json >/dev/null || fail "errors do not add up: $(cat loose/plan.json)"
+[[ -s loose/parameters.json ]] && grep -q 'wanted 50.00 %: met' text || fail "$(cat text)"
+# the frame stays, what the plan chose is listed; the seeds follow the frame's
+jq -e '.overrides | keys == ["densities", "particles", "seeds", "tests"]' loose/plan.json >/dev/null || fail "$(jq -c .overrides loose/plan.json)"
+jq -e '.seeds == [5, 1, 6, 7] and .densities[0] == 0.68 and .strain_rate == 3000' loose/spec.resolved.json >/dev/null || fail spec
+# held-out tests came last, on the packings of the plan
+jq -e '[.tests[] | select(.role == "validation")] | length == 4' loose/dataset/dataset.json >/dev/null || fail 'no validation tests'
+jq -e '[.tests[] | select(.role == "validation")] | length == 0' loose/pilot/smaller/dataset.json >/dev/null || fail 'the pilot saw validation tests'
+grep -A1 'rung:' log | grep -q 'tests of other roles' || fail "$(cat log)"
 
-# no time for more than the first round
+# a smaller one: the cheapest of the candidates that reach it; what is finished is found again
+error=$(jq '.rounds[0].error * 0.7' loose/plan.json)
 code=0
-"$grainlaw" calibrate spec.json -o tight --target-error 0.0001 --for path.json --max-cost 0.001 --threads 2 --json >json 2>log || code=$?
+target -o loose --target-error "$error" --max-cost 200 >text 2>log || code=$?
+jq -e --argjson e "$error" '.rounds[1].settings as $s | (.rounds | length) >= 2 and (.candidates | length) > 20
+  and all(.candidates[]; .reaches == (.error <= 0.9 * $e))
+  and ([.candidates[] | select(.reaches)] | min_by(.seconds) | .particles == $s.particles and .densities == $s.densities
+       and .packings >= $s.packings)
+  and (.outcome == "met") == (.rounds[-1].error <= $e)' loose/plan.json >/dev/null || fail "$(cat loose/plan.json)"
+[[ $code == 0 || $code == 3 ]] && jq -e --argjson code "$code" '(.outcome == "met") == ($code == 0)' loose/plan.json >/dev/null || fail "exit $code"
+grep -q 'plan: ' log || fail 'the plan was not announced'
+
+# no time for more than the pilot
+code=0
+target -o loose --target-error 0.0001 --max-cost 0.001 --json >json 2>log || code=$?
 [[ $code == 3 ]] || fail "exit $code: $(tail -1 log)"
 jq -e '.outcome != "met" and (.rounds | length) == 1' json >/dev/null || fail "$(cat json)"
 
-for bad in '--target-error 0.1' '--for path.json' '--target-error 0 --for path.json' '--target-error 0.1 --for path.json --dataset loose'; do
+echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "ISO", "extent": {"target_nu": 0.8}}]}' >iso.json
+for bad in '--target-error 0.1' '--for path.json' '--target-error 0 --for path.json' '--target-error 0.1 --for path.json --dataset loose' \
+  '--target-error 0.1 --for path.json --quantity C_star' '--target-error 0.1 --for iso.json --quantity s_par' '--quantity P_star'; do
   code=0
   # shellcheck disable=SC2086 # several words
   "$grainlaw" calibrate spec.json -o bad $bad >/dev/null 2>err || code=$?

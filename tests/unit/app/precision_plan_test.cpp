@@ -3,93 +3,186 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
-#include "fit/staged_laws.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-/// The published law, each parameter known to `error` of its value with one packing, and as well as that allows with more.
-fit::Calibration calibrated(int packings, double error, double bias) {
-  fit::Calibration c = fit::nothing_known();
-  c.parameters = published_parameters();
-  c.parameters.anisotropy.a2 = 1.18;
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const std::string name = parameter_table()[i].name;
-    if (name.starts_with("memory") || name == "anisotropy.a0") continue;
-    const double value = *fields(c.parameters)[i], se = error * std::abs(value) / std::sqrt(packings);
-    c.estimates[i] = {value, se, fit::Status::fitted, ""};
-    c.estimates[i].degrees_of_freedom = packings - 1;
-    c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = se * se;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Ten packings of 100 know it to `width`; at rate 1 the rate alone spoils it by `rate`, a hundred spheres by `size`.
+PlanFindings findings(double width, double rate, double size) {
+  PlanFindings f;
+  f.scale = {{100, 10, 1, 0.1, 4, 0.3}, 0};
+  f.reference = f.scale.pilot;
+  QuantityFindings q{"s_par", width, {{0.21, 0.01, 0.06}, {0.3, 0.01, 0.04}}, {}};
+  q.biases[0].slope = rate;
+  q.biases[2].slope = size;
+  f.quantities = {q};
+  f.rates = {1, 0, 0};
+  return f;
+}
+
+/// A packing costs its spheres over its rate.
+Work work(const PlanSettings& s) { return {static_cast<double>(s.particles) / s.strain_rate, 0, 0, 0}; }
+
+PlanGoal goal(double error, double seconds_left = kInfinity) { return {error, seconds_left, {}, kInfinity, 100000}; }
+
+TEST(PrecisionPlan, BandsFollowStudentsTOverTheRootOfAllSpheres) {
+  const PlanFindings f = findings(0.08, 0, 0);
+  PlanSettings s = f.reference;
+  s.particles = 300;
+  s.packings = 4;
+  const double factor = student_95(3) / std::sqrt(4 * 300) / (student_95(9) / std::sqrt(10 * 100));
+  EXPECT_NEAR(expected(f.quantities[0], f, s).half_width, 0.08 * factor, 1e-15);
+  // densities share what is common to a packing, and nothing else
+  s = f.reference;
+  s.densities = 8;
+  s.shear_strain = 0.21;
+  EXPECT_NEAR(expected(f.quantities[0], f, s).half_width, 0.08 * std::sqrt((0.01 + 0.06 / 8) / (0.01 + 0.04 / 4)),
+              1e-15);
+}
+
+TEST(PrecisionPlan, BiasesFollowTheirOrders) {
+  PlanFindings f = findings(0.08, 0.03, 0.02);
+  f.scale.wanted_rate = 0.25;
+  f.quantities[0].biases[1].slope = 0.01;
+  PlanSettings s = f.reference;
+  s.strain_rate = 4;
+  s.time_step_fraction = 0.05;
+  s.particles = 800;
+  const ExpectedError e = expected(f.quantities[0], f, s);
+  EXPECT_NEAR(e.biases[0], 0.03 * (std::pow(4, 0.6) - std::pow(0.25, 0.6)), 1e-15);
+  EXPECT_NEAR(e.biases[1], 0.01 / 4, 1e-15);
+  EXPECT_NEAR(e.biases[2], 0.02 / 8, 1e-15);
+  EXPECT_NEAR(
+      e.total() * e.total(),
+      e.half_width * e.half_width + e.biases[0] * e.biases[0] + e.biases[1] * e.biases[1] + e.biases[2] * e.biases[2],
+      1e-15);
+  s.strain_rate = 0.25;  // as wanted
+  EXPECT_EQ(expected(f.quantities[0], f, s).biases[0], 0);
+}
+
+TEST(PrecisionPlan, ADifferenceBelowItsErrorIsNoBias) {
+  const Bias seen = bias_of(-0.05, 0.03, 2);
+  EXPECT_NEAR(seen.slope, 0.04 / 2, 1e-15);
+  EXPECT_NEAR(seen.resolution, 0.03, 1e-15);
+  EXPECT_EQ(bias_of(0.02, 0.03, 2).slope, 0);
+}
+
+TEST(PrecisionPlan, AFurtherRoundChangesNothingThatWasExpected) {
+  const PlanFindings f = findings(0.08, 0.03, 0.02);
+  PlanSettings reached = f.reference, s = f.reference;
+  reached.particles = 700;
+  reached.densities = 6;
+  const PlanFindings later = rebased(f, reached, {expected(f.quantities[0], f, reached).half_width});
+  s.packings = 5;
+  s.strain_rate = 2;
+  const ExpectedError before = expected(f.quantities[0], f, s), after = expected(later.quantities[0], later, s);
+  EXPECT_NEAR(after.half_width, before.half_width, 1e-15);
+  EXPECT_EQ(after.biases, before.biases);
+}
+
+TEST(PrecisionPlan, TakesTheSmallestNumberOfPackingsThatReaches) {
+  const PlanFindings f = findings(0.08, 0.01, 0.01);
+  const Candidate c = *candidate(f.reference, work(f.reference), f, goal(0.03));
+  EXPECT_TRUE(c.reaches);
+  PlanSettings fewer = c.settings;
+  --fewer.packings;
+  EXPECT_GT(candidate_with(fewer, c.work, f, goal(0.03)).error, 0.03);
+  EXPECT_DOUBLE_EQ(c.seconds, 100.0 * c.settings.packings);
+  EXPECT_FALSE(candidate(f.reference, work(f.reference), f, goal(0.0141))->reaches);  // the biases alone are larger
+}
+
+/// n N/r is the cost, A/(n N) + (b r^0.6)^2 = E^2: least where b^2 r^1.2 is E^2/(1 + 1.2).
+TEST(PrecisionPlan, FindsTheAnalyticOptimum) {
+  const double target = 0.01;
+  const PlanFindings f = findings(0.08, 0.05, 0);
+  std::vector<Candidate> candidates;
+  for (double rate = 1e-3; rate < 1; rate *= 1.05) {
+    PlanSettings s = f.reference;
+    s.particles = 1;  // so many packings that t is 1.96 and their number fine
+    s.strain_rate = rate;
+    candidates.push_back(*candidate(s, work(s), f, goal(target)));
   }
-  fit::Stage stage;
-  stage.name = "evolution";
-  for (const char* test : {"D2-0.70-s1", "D2-0.70-s2", "D2-0.78-s1", "D2-0.78-s2"}) {
-    stage.tests.push_back({test, "s_par", true, 100, 0, 0, 0.1, bias * 0.2, 0.2});
-    // of opposite sign in the packings: scatter, not discrepancy
-    stage.tests.push_back({test, "F_par", true, 100, 0, 0, 0.1, std::string(test).ends_with("1") ? 0.05 : -0.05, 0.1});
+  const Candidate& best = candidates.at(*choose(candidates, goal(target)));
+  EXPECT_NEAR(best.errors[0].biases[0] * best.errors[0].biases[0] / (target * target), 1 / 2.2, 0.03);
+}
+
+TEST(PrecisionPlan, ASmallerTargetIsNeverCheaper) {
+  const PlanFindings f = findings(0.08, 0.02, 0.02);
+  std::vector<PlanSettings> grid;
+  for (const int size : {1, 4, 16, 64}) {
+    for (const double rate : {1.0, 0.1, 0.01, 0.001}) {
+      for (const int densities : {4, 8}) {
+        PlanSettings s = f.reference;
+        s.particles *= size;
+        s.strain_rate = rate;
+        s.densities = densities;
+        grid.push_back(s);
+      }
+    }
   }
-  c.stages.push_back(stage);
-  return c;
-}
-
-Path shear() { return {0.72, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.2}}}; }
-
-struct Reached {
-  PrecisionPlan plan;
-  std::vector<std::size_t> packings;  // of each call
-};
-
-Reached reached(double target, double max_seconds, double error, double bias) {
-  Reached r;
-  double time = 0;
-  Spec spec;
-  spec.seeds = {4, 9};
-  r.plan = reach(
-      {target, shear(), max_seconds}, spec,
-      [&](const Spec& with) {
-        r.packings.push_back(with.seeds.size());
-        time = 10.0 * static_cast<double>(with.seeds.size());
-        return calibrated(static_cast<int>(with.seeds.size()), error, bias);
-      },
-      [&] { return time; }, [](const std::string&) {});
-  return r;
-}
-
-TEST(PrecisionPlan, PackingsFollowStudentsTOverTheRoot) {
-  for (const int n : {2, 3, 5, 10}) {
-    const double width = 0.1, wanted = 0.03;
-    const int needed = packings_needed(width, n, wanted);
-    const auto at = [&](int m) { return width * student_95(m - 1) / student_95(n - 1) * std::sqrt(double(n) / m); };
-    EXPECT_LE(at(needed), wanted);
-    EXPECT_GT(at(needed - 1), wanted);
+  double last = 0;
+  for (double target = 0.5; target > 2e-3; target /= 1.1) {
+    std::vector<Candidate> candidates;
+    for (const PlanSettings& s : grid) candidates.push_back(*candidate(s, work(s), f, goal(target)));
+    const auto chosen = choose(candidates, goal(target));
+    ASSERT_TRUE(chosen) << target;
+    EXPECT_LE(candidates[*chosen].error, target);
+    EXPECT_GE(candidates[*chosen].seconds, last) << target;
+    last = candidates[*chosen].seconds;
   }
-  EXPECT_EQ(packings_needed(0.02, 5, 0.02), 5);
+  EXPECT_GT(last, 1e6);
 }
 
-TEST(PrecisionPlan, AddsPackingsUntilTheBandIsNarrowEnough) {
-  const Reached r = reached(0.02, 0, 0.02, 0.001);
-  EXPECT_EQ(r.plan.outcome, PlanOutcome::met);
-  EXPECT_EQ(r.packings.front(), 3u);
-  ASSERT_GE(r.plan.rounds.size(), 2u);
-  EXPECT_GT(r.plan.rounds.front().error.half_width, 0.02);
-  EXPECT_LE(r.plan.rounds.back().error.half_width, 0.02);
-  EXPECT_EQ(r.plan.rounds.back().error.rung, Rung::evolution);
-  // one round fewer packings would not have done: what is made beyond the need is the slack of a twentieth
-  EXPECT_LE(r.packings.back(), std::ceil(1.05 * packings_needed(r.plan.rounds.front().error.half_width, 3, 0.02)) + 1);
+TEST(PrecisionPlan, KeepsToTheTimeThatIsLeft) {
+  const PlanFindings f = findings(0.08, 0, 0);
+  const auto c = candidate(f.reference, work(f.reference), f, goal(0.001, 1750));
+  ASSERT_TRUE(c);
+  EXPECT_EQ(c->settings.packings, 17);
+  EXPECT_FALSE(c->reaches);
+  EXPECT_FALSE(candidate(f.reference, work(f.reference), f, goal(0.001, 299)));  // three packings take longer
+  // the best of what can be paid for, if it is better than what there is
+  PlanSettings cheap = f.reference;
+  cheap.strain_rate = 4;
+  const std::vector<Candidate> both{*c, *candidate(cheap, work(cheap), f, goal(0.001, 1750))};
+  PlanGoal now = goal(0.001, 1750);
+  EXPECT_EQ(choose(both, now), 1u);
+  now.error_now = 1e-3;
+  EXPECT_EQ(choose(both, now), std::nullopt);
+  now = goal(0.001);  // without a limit, what does not reach is no plan
+  EXPECT_EQ(choose(both, now), std::nullopt);
 }
 
-TEST(PrecisionPlan, StopsWhereMorePackingsDoNotHelp) {
-  const Reached biased = reached(0.02, 0, 0.02, 0.05);
-  EXPECT_EQ(biased.plan.outcome, PlanOutcome::discrepancy);
-  EXPECT_EQ(biased.packings.size(), 1u);
-  EXPECT_NEAR(biased.plan.rounds.front().error.discrepancy, 0.05, 1e-12);
-  const Reached slow = reached(0.02, 45, 0.05, 0);
-  EXPECT_EQ(slow.plan.outcome, PlanOutcome::max_cost);
-  EXPECT_LE(slow.plan.rounds.back().seconds, 45);
-  EXPECT_EQ(slow.packings.back(), 4u);
-  EXPECT_EQ(reached(0.02, 0, 0, 0).plan.outcome, PlanOutcome::no_band);
+TEST(PrecisionPlan, FinishedPackingsCostNothingButTheirFit) {
+  PlanFindings f = findings(0.08, 0, 0);
+  f.rates = {1, 2, 3};
+  const Work each{70, 30, 5, 7};
+  PlanGoal of = goal(0.04);
+  of.finished = f.reference;
+  const Candidate more = *candidate(f.reference, each, f, of);
+  EXPECT_DOUBLE_EQ(more.seconds, (more.settings.packings - 10) * (100 + 10) + more.settings.packings * 21);
+  of.finished.strain_rate = 2;
+  EXPECT_DOUBLE_EQ(candidate(f.reference, each, f, of)->seconds, more.settings.packings * 131.0);
+  // what is finished already is no plan
+  of.finished = f.reference;
+  EXPECT_EQ(candidate(f.reference, each, f, {1, kInfinity, f.reference, kInfinity, 1000})->settings.packings, 11);
+}
+
+TEST(PrecisionPlan, WorkScalesWithSizeRateAndStep) {
+  const PlanSettings at{100, 10, 1, 0.1, 4, 0.3};
+  PlanSettings s = at;
+  s.particles = 300;
+  s.strain_rate = 0.5;
+  s.time_step_fraction = 0.05;
+  const Work w = scaled({8, 4, 2, 1}, at, s);
+  EXPECT_DOUBLE_EQ(w.preparation, 8 * 12);
+  EXPECT_DOUBLE_EQ(w.tests, 4 * 12);
+  EXPECT_DOUBLE_EQ(w.relaxed, 2 * 3);
+  EXPECT_EQ(w.fitted_tests, 1);
 }
 
 }  // namespace

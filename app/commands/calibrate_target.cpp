@@ -1,0 +1,159 @@
+#include "app/commands/calibrate_target.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "app/files/path_file.hpp"
+#include "app/files/plan_file.hpp"
+#include "app/output_folder.hpp"
+#include "app/plan_pilot.hpp"
+#include "app/planned_spec.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<TestRecord> records(const Dataset& dataset) {
+  std::vector<TestRecord> tests;
+  for (const DatasetTest& test : dataset.tests) tests.push_back(test.record);
+  return tests;
+}
+
+/// Coarser settings that a bias is measured against.
+PlanSettings faster(PlanSettings pilot) {
+  pilot.strain_rate *= 8;
+  return pilot;
+}
+PlanSettings smaller(PlanSettings pilot) {
+  pilot.particles /= 4;
+  pilot.packings *= 2;  // they scatter more
+  return pilot;
+}
+
+/// The pilot's findings from its own runs and those at the coarser settings.
+PlanFindings findings_of(const PrecisionTarget& target, const Scale& scale, const PredictionError& known,
+                         const std::vector<TestRecord>& tests, const std::vector<TestRecord>& of_faster,
+                         const std::vector<TestRecord>& of_smaller, const CostRates& rates) {
+  const PlanSettings& pilot = scale.pilot;
+  const auto apart = [&](Cause cause, const PlanSettings& coarse) {
+    return shape(cause, coarse, scale) - shape(cause, pilot, scale);
+  };
+  PlanFindings findings{scale, pilot, {}, rates};
+  for (const std::string& quantity : target.quantities) {
+    QuantityFindings q{quantity, std::nan(""), steady_scatter(tests, quantity, plan_strains(pilot)), {}};
+    for (const QuantityPrecision& p : known.quantities) {
+      if (p.quantity == quantity) q.half_width = p.half_width;
+    }
+    const Difference of_rate = difference_of(of_faster, tests, quantity, true);
+    const Difference of_size = difference_of(of_smaller, tests, quantity, false);
+    q.biases = {bias_of(of_rate.mean, of_rate.standard_error, apart(Cause::strain_rate, faster(pilot))),
+                Bias{std::nan(""), std::nan(""), energy_residual(tests), 0},
+                bias_of(of_size.mean, of_size.standard_error, apart(Cause::size, smaller(pilot)))};
+    findings.quantities.push_back(q);
+  }
+  return findings;
+}
+
+/// Keys of the SPEC that differ in `planned`.
+Json overrides(const Spec& frame, const Spec& planned) {
+  const OrderedJson before = spec_to_json(frame), after = spec_to_json(planned);
+  Json changed = Json::object();
+  for (const auto& item : after.items()) {
+    if (before[item.key()] != item.value()) changed[item.key()] = Json(item.value());
+  }
+  return changed;
+}
+
+std::string table_of(const TargetRun& run, const PrecisionTarget& target, const fs::path& output) {
+  std::string text = fmt::format("{:>8} {:>9} {:>8} {:>5} {:>4} {:>6} {:>9} {:>9} {:>8}\n", "packings", "particles",
+                                 "rate", "step", "nu", "strain", "seconds", "expected", "stated");
+  for (const TargetRound& r : run.rounds) {
+    const PlanSettings& s = r.settings;
+    const auto percent = [](double x) { return std::isfinite(x) ? fmt::format("{:.2f}%", 100 * x) : "-"; };
+    text += fmt::format("{:8} {:9} {:8.4g} {:5.2g} {:4} {:6.2g} {:9.1f} {:>9} {:>8}\n", s.packings, s.particles,
+                        s.strain_rate, s.time_step_fraction, s.densities, s.shear_strain, r.seconds,
+                        percent(r.expected_error), percent(r.error));
+  }
+  text += text_of(run.rounds.back()) + "\n";
+  return text + fmt::format("wanted {:.2f} %: {}\n{}\n", 100 * target.error, to_string(run.outcome),
+                            (output / "parameters.json").string());
+}
+
+}  // namespace
+
+PrecisionTarget target_of(const CalibrateOptions& options) {
+  if (!options.dataset.empty())
+    throw InvalidInput("calibrate: --target-error makes new runs, which --dataset cannot; leave one of them out");
+  if (options.target_path.empty())
+    throw InvalidInput("calibrate: --target-error is that of a prediction; give its PATH with --for");
+  const Path path = read_path(options.target_path).path;
+  if (law_decides(path))
+    throw InvalidInput(fmt::format("{}: segments: leave the strain to the law; a target needs a path of given strain",
+                                   options.target_path.string()));
+  const bool shears = shear_direction(resolve(path)).norm() > 0;
+  PrecisionTarget target{*options.target_error, options.quantities, path, options.max_cost};
+  if (target.quantities.empty()) {
+    target.quantities = {"P_star"};
+    if (shears) target.quantities.insert(target.quantities.end(), {"s_par", "F_par"});
+  }
+  for (const std::string& quantity : target.quantities) {
+    if (quantity != "P_star" && !shears)
+      throw InvalidInput(fmt::format("{}: has no shear, along which {} would be measured; give --quantity P_star",
+                                     options.target_path.string(), quantity));
+  }
+  return target;
+}
+
+ExitCode calibrate_for(const PrecisionTarget& target, const Spec& spec, const CalibrateOptions& options,
+                       const Calibrate& calibrate_with, const Simulate& simulate, Session& session) {
+  const PlanSettings pilot = pilot_settings(spec);
+  const Work pilot_work = work_of(planned_spec(spec, pilot, target.path));
+  Dataset dataset;
+  double fit_seconds = 0;
+  TargetActions actions;
+  actions.calibrate = [&](const PlanSettings& settings) {
+    return prediction_error(
+        calibrate_with(calibration_only(planned_spec(spec, settings, target.path)), dataset, fit_seconds), target.path);
+  };
+  actions.explore = [&](const PredictionError& known) {
+    const CostRates rates = cost_rates(dataset, pilot_work, fit_seconds, session.threads);
+    const fs::path folder = make_subfolder(options.output, "pilot");
+    const auto coarser = [&](const char* name, const PlanSettings& settings) {
+      return records(
+          simulate(calibration_only(planned_spec(spec, settings, target.path)), make_subfolder(folder, name)));
+    };
+    return findings_of(target, {pilot, spec.preparation.drive.strain_rate}, known, records(dataset),
+                       coarser("faster", faster(pilot)), coarser("smaller", smaller(pilot)), rates);
+  };
+  std::map<std::pair<int, double>, Work> works;  // by what does not scale
+  actions.work = [&](const PlanSettings& settings) {
+    PlanSettings at = pilot;
+    at.densities = settings.densities;
+    at.shear_strain = settings.shear_strain;
+    const auto [entry, is_new] = works.try_emplace({at.densities, at.shear_strain});
+    if (is_new) entry->second = work_of(planned_spec(spec, at, target.path));
+    return scaled(entry->second, at, settings);
+  };
+  actions.seconds = [&] { return session.stopwatch.seconds(); };
+  actions.log = [&](const std::string& text) { session.progress.log(text); };
+  const TargetRun run = reach(target, pilot, plan_grid(pilot, spec.preparation.drive.strain_rate), actions);
+
+  const Spec planned = planned_spec(spec, run.rounds.back().settings, target.path);
+  if (calibration_only(planned).tests.size() < planned.tests.size()) {
+    session.progress.log("tests of other roles, of which the plan knew nothing");
+    calibrate_with(planned, dataset, fit_seconds);
+  }
+  const OrderedJson document = plan_to_json(run, target, overrides(spec, planned),
+                                            provenance(session.command, session.threads, session.stopwatch));
+  write_json(options.output / "plan.json", document);
+  print_result(session.json ? json_text(document) : table_of(run, target, options.output));
+  return run.outcome == TargetOutcome::met ? ExitCode::ok : ExitCode::not_converged;
+}
+
+}  // namespace grainlaw::app

@@ -1,0 +1,28 @@
+#pragma once
+// grainlaw calibrate SPEC.json --target-error E --for PATH.json: a pilot, the cheapest plan, and its runs.
+
+#include <filesystem>
+#include <functional>
+
+#include "app/commands/calibrate.hpp"
+#include "app/files/dataset.hpp"
+#include "app/files/spec_file.hpp"
+#include "app/target_run.hpp"
+#include "fit/calibrate.hpp"
+
+namespace grainlaw::app {
+
+/// What the options ask for. Throws InvalidInput for options, a path or quantities that no plan can be made for.
+PrecisionTarget target_of(const CalibrateOptions& options);
+
+/// Simulates the tests of a spec into a folder.
+using Simulate = std::function<Dataset(const Spec& spec, const std::filesystem::path& folder)>;
+/// Simulates and fits a spec, and writes all files of a calibration.
+using Calibrate = std::function<fit::Calibration(const Spec& spec, Dataset& dataset, double& fit_seconds)>;
+
+/// Reaches for the target in the frame of `spec`; then the tests of other roles are run on the packings of the last round.
+/// Writes plan.json and prints it.
+ExitCode calibrate_for(const PrecisionTarget& target, const Spec& spec, const CalibrateOptions& options,
+                       const Calibrate& calibrate_with, const Simulate& simulate, Session& session);
+
+}  // namespace grainlaw::app
