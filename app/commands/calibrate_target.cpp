@@ -1,6 +1,7 @@
 #include "app/commands/calibrate_target.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +71,7 @@ Json overrides(const Spec& frame, const Spec& planned) {
   return changed;
 }
 
-std::string table_of(const TargetRun& run, const PrecisionTarget& target, const fs::path& output) {
+std::string table_of(const TargetRun& run, const PrecisionTarget& target, const Spec& planned, const fs::path& output) {
   std::string text = fmt::format("{:>8} {:>9} {:>8} {:>5} {:>4} {:>6} {:>9} {:>9} {:>8}\n", "packings", "particles",
                                  "rate", "step", "nu", "strain", "seconds", "expected", "stated");
   for (const TargetRound& r : run.rounds) {
@@ -81,6 +82,8 @@ std::string table_of(const TargetRun& run, const PrecisionTarget& target, const 
                         percent(r.expected_error), percent(r.error));
   }
   text += text_of(run.rounds.back()) + "\n";
+  text += fmt::format("sheared at {}: the laws of shear are known there, beyond they are extrapolated\n",
+                      fmt::join(planned.densities, ", "));
   return text + fmt::format("wanted {:.2f} %: {}\n{}\n", 100 * target.error, to_string(run.outcome),
                             (output / "parameters.json").string());
 }
@@ -152,7 +155,7 @@ ExitCode calibrate_for(const PrecisionTarget& target, const Spec& spec, const Ca
   const OrderedJson document = plan_to_json(run, target, overrides(spec, planned),
                                             provenance(session.command, session.threads, session.stopwatch));
   write_json(options.output / "plan.json", document);
-  print_result(session.json ? json_text(document) : table_of(run, target, options.output));
+  print_result(session.json ? json_text(document) : table_of(run, target, planned, options.output));
   return run.outcome == TargetOutcome::met ? ExitCode::ok : ExitCode::not_converged;
 }
 

@@ -20,8 +20,8 @@ held=$out/predictions/uniaxial-0.695
 build/release/bin/grainlaw predict "$out/parameters.json" "$here/uniaxial-0.695.json" -o "$held" \
   --spec "$here/spec.json" --dem --initial law --model "$model" >"$out/held-out.txt"
 
-# Root mean square over the path of the mean over the packings of DEM - law, over the largest |mean DEM|; and how far such a mean is
-# off by chance, two standard errors.
+# Root mean square over the path of the mean over the packings of DEM - law, over the largest |mean DEM|; and what it would be by the
+# packings' chance alone, their standard error.
 reached() {
   local quantity=$1 seed files=()
   for seed in $(jq -r '.seeds[]' "$here/uniaxial-0.695.json"); do
@@ -37,7 +37,7 @@ reached() {
       n = file / 2
       for (row in sum) {
         mean = sum[row] / n; variance = (squares[row] - n * mean * mean) / (n - 1) / n
-        total += mean * mean; chance += 4 * variance; ++rows
+        total += mean * mean; chance += variance; ++rows
         value = level[row] / n; if (value < 0) value = -value
         if (value > largest) largest = value
       }
@@ -45,7 +45,7 @@ reached() {
     }' "${files[@]}"
 }
 
-printf '\n%-8s %8s %8s %14s %13s %9s   %s\n' quantity wanted stated 'really reached' '(chance)' seconds outcome
+printf '\n%-8s %8s %8s %14s %13s %9s   %s\n' quantity wanted stated 'really reached' 'by chance' seconds outcome
 seconds=$(jq '[.rounds[].seconds] | add' "$out/plan.json")
 jq -r '.outcome as $o | .rounds[-1].quantities[] | [.quantity, 100 * .error, $o] | @tsv' "$out/plan.json" |
   while IFS=$'\t' read -r quantity stated outcome; do
