@@ -25,9 +25,17 @@ double steady_factor(const std::vector<SteadyScatter>& scatter, const PlanSettin
   return std::sqrt(at->between + at->within / settings.densities);
 }
 
+int finished_packings(const PlanSettings& settings, const std::vector<PlanSettings>& finished) {
+  int packings = 0;
+  for (const PlanSettings& round : finished) {
+    if (same_packings(settings, round)) packings = std::max(packings, round.packings);
+  }
+  return packings;
+}
+
 double seconds_for(const PlanSettings& settings, const Work& work, const CostRates& rates,
-                   const PlanSettings& finished) {
-  const int missing = settings.packings - (same_packings(settings, finished) ? finished.packings : 0);
+                   const std::vector<PlanSettings>& finished) {
+  const int missing = std::max(0, settings.packings - finished_packings(settings, finished));
   return missing * ((work.preparation + work.tests) * rates.particle_step + work.relaxed * rates.relaxed) +
          settings.packings * work.fitted_tests * rates.fitted_test;
 }
@@ -126,8 +134,7 @@ std::optional<Candidate> candidate(const PlanSettings& settings, const Work& wor
     s.packings = packings;
     return candidate_with(s, work, findings, goal);
   };
-  const int first =
-      same_packings(settings, goal.finished) ? std::max(kLeastPackings, goal.finished.packings + 1) : kLeastPackings;
+  const int first = std::max(kLeastPackings, finished_packings(settings, goal.finished) + 1);
   const auto too_long = [&](int n) {
     PlanSettings s = settings;
     s.packings = n;

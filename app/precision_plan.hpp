@@ -114,10 +114,10 @@ struct Candidate {
 
 /// The target and where one stands.
 struct PlanGoal {
-  double error = 0;         ///< wanted [-]
-  double seconds_left = 0;  ///< infinity: no limit [s]
-  PlanSettings finished;    ///< the last round's
-  double error_now = 0;     ///< that it reached [-]
+  double error = 0;                    ///< wanted [-]
+  double seconds_left = 0;             ///< infinity: no limit [s]
+  std::vector<PlanSettings> finished;  ///< of all rounds
+  double error_now = 0;                ///< that the last one reached [-]
   int max_packings = 1000;
 };
 

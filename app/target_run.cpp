@@ -10,7 +10,7 @@ namespace grainlaw::app {
 namespace {
 
 constexpr double kAim = 0.9;   // of the target: what is expected is itself uncertain
-constexpr double kGrowth = 4;  // of packings times spheres in one round at most: errors at most halved
+constexpr double kGrowth = 4;  // of packings times spheres over the largest round's: errors at most halved
 constexpr int kRoundsWithoutBand = 3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -48,10 +48,12 @@ bool is_discrepant(const TargetRound& round, double target) {
   });
 }
 
-/// As many packings of the plan as the last round allows to foresee.
-PlanSettings first_part(PlanSettings plan, const PlanSettings& last) {
-  const double most = kGrowth * last.packings * static_cast<double>(last.particles);
-  plan.packings = std::min(plan.packings, std::max(3, static_cast<int>(most / static_cast<double>(plan.particles))));
+/// As many packings of the plan as the rounds until now allow to foresee.
+PlanSettings first_part(PlanSettings plan, const std::vector<PlanSettings>& finished) {
+  double largest = 0;
+  for (const PlanSettings& s : finished) largest = std::max(largest, s.packings * static_cast<double>(s.particles));
+  const double most = kGrowth * largest / static_cast<double>(plan.particles);
+  plan.packings = std::min(plan.packings, std::max(3, static_cast<int>(most)));
   return plan;
 }
 
@@ -119,7 +121,9 @@ TargetRun reach(const PrecisionTarget& target, const PlanSettings& pilot, const 
 
     const PlanFindings findings = rebased(run.pilot, last.settings, half_widths(last));
     const double left = target.max_seconds > 0 ? target.max_seconds - actions.seconds() : kInfinity;
-    const PlanGoal goal{kAim * target.error, left, last.settings, std::isnan(last.error) ? kInfinity : last.error};
+    std::vector<PlanSettings> finished;
+    for (const TargetRound& round : run.rounds) finished.push_back(round.settings);
+    const PlanGoal goal{kAim * target.error, left, finished, std::isnan(last.error) ? kInfinity : last.error};
     std::vector<Candidate> candidates;
     for (const PlanSettings& settings : grid) {
       if (const auto c = candidate(settings, actions.work(settings), findings, goal)) candidates.push_back(*c);
@@ -130,7 +134,7 @@ TargetRun reach(const PrecisionTarget& target, const PlanSettings& pilot, const 
     const Candidate& plan = candidates[*chosen];
     actions.log(
         fmt::format("plan: {}: expected {:.2f} % in {:.0f} s", text_of(plan.settings), 100 * plan.error, plan.seconds));
-    const PlanSettings first = first_part(plan.settings, last.settings);
+    const PlanSettings first = first_part(plan.settings, finished);
     if (first.packings < plan.settings.packings)
       actions.log(fmt::format("first {} of these packings, which will say more", first.packings));
     const Candidate next = candidate_with(first, plan.work, findings, goal);

@@ -162,14 +162,16 @@ TEST(PrecisionPlan, FinishedPackingsCostNothingButTheirFit) {
   f.rates = {1, 2, 3};
   const Work each{70, 30, 5, 7};
   PlanGoal of = goal(0.04);
-  of.finished = f.reference;
+  of.finished = {f.reference};
   const Candidate more = *candidate(f.reference, each, f, of);
   EXPECT_DOUBLE_EQ(more.seconds, (more.settings.packings - 10) * (100 + 10) + more.settings.packings * 21);
-  of.finished.strain_rate = 2;
+  of.finished[0].strain_rate = 2;
   EXPECT_DOUBLE_EQ(candidate(f.reference, each, f, of)->seconds, more.settings.packings * 131.0);
   // what is finished already is no plan
-  of.finished = f.reference;
-  EXPECT_EQ(candidate(f.reference, each, f, {1, kInfinity, f.reference, kInfinity, 1000})->settings.packings, 11);
+  EXPECT_EQ(candidate(f.reference, each, f, {1, kInfinity, {f.reference}, kInfinity, 1000})->settings.packings, 11);
+  // nor is an earlier round forgotten
+  of.finished.insert(of.finished.begin(), f.reference);
+  EXPECT_DOUBLE_EQ(candidate(f.reference, each, f, of)->seconds, more.seconds);
 }
 
 TEST(PrecisionPlan, WorkScalesWithSizeRateAndStep) {
