@@ -3,6 +3,8 @@ set -euo pipefail
 grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
 slowest=0
+allowed=100 # ms
+[[ -z ${GRAINLAW_SANITIZE:-} ]] || allowed=2000 # an instrumented program needs half a second to start
 
 # refuse FILE EXPECTED COMMAND...
 refuse() {
@@ -17,7 +19,7 @@ refuse() {
   [[ ! -e out ]] || fail "left a folder behind: $*"
   local milliseconds
   milliseconds=$(awk '{print int(1000 * ($1 + $2))}' times)
-  (( milliseconds <= 100 )) || fail "took $milliseconds ms: $*"
+  (( milliseconds <= allowed )) || fail "took $milliseconds ms: $*"
   (( milliseconds <= slowest )) || slowest=$milliseconds
 }
 spec() { printf '%s' "$1" >spec.json; refuse "$2" "$grainlaw" calibrate spec.json; }
