@@ -4,7 +4,7 @@ grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
 slowest=0
 allowed=100 # ms
-[[ -z ${GRAINLAW_SANITIZE:-} ]] || allowed=2000 # an instrumented program needs half a second to start
+[[ -z ${GRAINLAW_INSTRUMENTED:-} ]] || allowed=2000 # an instrumented program needs half a second to start
 
 # refuse FILE EXPECTED COMMAND...
 refuse() {
