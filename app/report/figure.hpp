@@ -10,11 +10,12 @@
 
 namespace grainlaw::app::report {
 
-enum class Marker { none, circle, square, triangle, diamond, cross, plus };
+enum class Marker { none, circle, square, triangle, diamond, cross, plus, star };
 enum class Line { none, solid, dashed, dotted };
 
-/// Colours of the palette by Okabe and Ito, distinguishable for the colour blind; yellow is left out (too pale).
-enum class Colour { ink, blue, vermillion, green, purple, orange, sky };
+/// Colours of the palette by Okabe and Ito, distinguishable for the colour blind; yellow is left out (too pale). Grey is for
+/// what matters less, it is none of the count.
+enum class Colour { ink, blue, vermillion, green, purple, orange, sky, grey };
 inline constexpr int kColourCount = 7;
 
 struct Series {

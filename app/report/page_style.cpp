@@ -2,8 +2,8 @@
 
 namespace grainlaw::app::report {
 
-// k0..k6 are the colours of figure.hpp in order: the palette by Okabe and Ito, a little darker on white where its sky
-// blue and orange would be faint, a little lighter on dark ground.
+// k0..k7 are the colours of figure.hpp in order: the palette by Okabe and Ito, a little darker on white where its sky
+// blue and orange would be faint, a little lighter on dark ground, and grey.
 const char* page_style() {
   return R"(:root {
   color-scheme: light dark;
@@ -40,7 +40,7 @@ svg .title { font-weight: 600; }
 svg .grid { fill: none; stroke: var(--grid); }
 svg .axis { fill: none; stroke: var(--quiet); stroke-width: .8; }
 .k0 { color: var(--k0); } .k1 { color: var(--k1); } .k2 { color: var(--k2); } .k3 { color: var(--k3); }
-.k4 { color: var(--k4); } .k5 { color: var(--k5); } .k6 { color: var(--k6); }
+.k4 { color: var(--k4); } .k5 { color: var(--k5); } .k6 { color: var(--k6); } .k7 { color: var(--quiet); }
 table { border-collapse: collapse; font-size: .9rem; margin: 1rem 0 1.5rem; }
 caption { text-align: left; font-weight: 600; padding-bottom: .4rem; }
 caption .source { font-weight: 400; }

@@ -2,7 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 namespace grainlaw::app::report {
+namespace {
+
+/// Five points on a circle of `radius`, five between them where the edges of a pentagram meet.
+std::string star_path(const PixelPoint& p, double radius) {
+  const double inner = radius * std::cos(0.4 * std::numbers::pi) / std::cos(0.2 * std::numbers::pi);
+  std::string path;
+  for (int k = 0; k < 10; ++k) {
+    const double r = k % 2 == 0 ? radius : inner, angle = 0.2 * std::numbers::pi * k;
+    path += fmt::format("{}{} {}", k == 0 ? "M" : "L", pixels(p.x + r * std::sin(angle)),
+                        pixels(p.y - r * std::cos(angle)));
+  }
+  return path + "z";
+}
+
+}  // namespace
 
 std::string pixels(double value) {
   std::string text = fmt::format("{:.2f}", value);
@@ -39,6 +57,9 @@ std::string marker_path(Marker marker, double size, const std::vector<PixelPoint
         break;
       case Marker::cross:
         path += fmt::format("M{} {}l{} {}m0 -{}l-{} {}", pixels(p.x - size), pixels(p.y - size), d, d, d, d, d);
+        break;
+      case Marker::star:
+        path += star_path(p, 1.2 * size);
         break;
       case Marker::plus:
         path += fmt::format("M{} {}h{}M{} {}v{}", pixels(p.x - 1.2 * size), pixels(p.y), double_diagonal, pixels(p.x),

@@ -16,7 +16,7 @@ struct PixelPoint {
 /// A length with two decimals at most, e.g. "12.5".
 std::string pixels(double value);
 
-/// CSS class of a colour: "k0" ... "k6".
+/// CSS class of a colour: "k0" ... "k7".
 std::string colour_class(Colour colour);
 
 /// Path data of a symbol of half width `size` around each point.
