@@ -11,7 +11,9 @@
 #include "app/commands/calibrate.hpp"
 #include "app/commands/predict.hpp"
 #include "app/commands/simulate.hpp"
+#include "app/commands/study_chain.hpp"
 #include "app/commands/study_dem.hpp"
+#include "app/commands/study_fit.hpp"
 #include "app/commands/study_integrator.hpp"
 #include "app/exit_code.hpp"
 #include "app/interrupt.hpp"
@@ -169,8 +171,41 @@ void add_study_dem(CLI::App& study, Common& common, Task& task) {
   command->callback([options, &task] { task = [options](Session& session) { return study_dem(*options, session); }; });
 }
 
+void add_study_chain(CLI::App& study, Common& common, Task& task) {
+  CLI::App* command = study.add_subcommand(
+      "chain", "what settings from packings to a prediction cost and how far it is from that of a reference");
+  auto options = std::make_shared<StudyChainOptions>();
+  command->add_option("SPEC", options->spec, "SPEC.json, the setting that is judged")->required();
+  command->add_option("--for", options->path, "PATH.json of the prediction")->required();
+  command->add_option("-o,--output", options->output, "folder for study.json, settings.svg and runs")->required();
+  command->add_option("--reference", options->reference,
+                      "KEY=VALUE of SPEC that make the reference; without any SPEC itself is the reference");
+  command
+      ->add_option("--vary", options->vary,
+                   "KEY=VALUE of SPEC, one setting each, e.g. seeds=[1,2] or tests[1].strain=0.2")
+      ->required();
+  add_checkpoints(*command, common);
+  add_common(*command, common);
+  command->callback(
+      [options, &task] { task = [options](Session& session) { return study_chain(*options, session); }; });
+}
+
+void add_study_fit(CLI::App& study, Common& common, Task& task) {
+  CLI::App* command = study.add_subcommand("fit", "what a fit loses that leaves out a part of the data; runs no DEM");
+  auto options = std::make_shared<StudyFitOptions>();
+  command->add_option("FOLDER", options->dataset, "folder of a data set or of a calibration")->required();
+  command->add_option("-o,--output", options->output, "folder for study.json and settings.svg")->required();
+  command->add_option("--for", options->path, "PATH.json of a prediction to judge by; default: the laws");
+  command->add_option(
+      "--vary", options->vary,
+      "KEY=VALUE, one setting each: rows_every=k, packings=n, densities_every=k, shear_strain=fraction, "
+      "loss=huber; default: the usual ones");
+  add_common(*command, common);
+  command->callback([options, &task] { task = [options](Session& session) { return study_fit(*options, session); }; });
+}
+
 void add_study(CLI::App& app, Common& common, Task& task) {
-  CLI::App* study = app.add_subcommand("study", "measurements of the program itself: integrator, dem");
+  CLI::App* study = app.add_subcommand("study", "measurements of the program itself: integrator, dem, fit, chain");
   study->require_subcommand(1);
   study->footer(kExitCodes);
   CLI::App* command = study->add_subcommand("integrator", "what integrating a path costs at which error");
@@ -187,6 +222,8 @@ void add_study(CLI::App& app, Common& common, Task& task) {
   command->callback(
       [options, &task] { task = [options](Session& session) { return study_integrator(*options, session); }; });
   add_study_dem(*study, common, task);
+  add_study_fit(*study, common, task);
+  add_study_chain(*study, common, task);
 }
 
 int fail(ExitCode code, const std::string& message) {

@@ -1,135 +1,90 @@
 #include "app/settings_study.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "fit/staged_laws.hpp"
-#include "model/error.hpp"
+#include <set>
 
 namespace grainlaw::app {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-double value_of(const fit::Estimate& estimate) {
-  return estimate.status == fit::Status::not_identified ? kMissing : estimate.value;
+/// Whether `other` shows every quantity that `one` shows; an error over fewer of them would be no better one.
+bool shows_as_much(const SettingResult& other, const SettingResult& one) {
+  for (std::size_t q = 0; q < one.errors.size(); ++q) {
+    if (one.errors[q].in_error && std::isfinite(one.errors[q].error) && !std::isfinite(other.errors[q].error))
+      return false;
+  }
+  return true;
 }
 
-double cost_of(const Dataset& dataset, double& seconds) {
-  double particle_steps = 0;
-  seconds = 0;
-  for (const DatasetTest& test : dataset.tests) {
-    particle_steps += static_cast<double>(test.cost.steps) * static_cast<double>(test.record.packing.particles);
-    seconds += test.cost.seconds;
+void find_dominated(std::vector<SettingResult>& results, std::size_t first) {
+  for (std::size_t i = first; i < results.size(); ++i) {
+    SettingResult& one = results[i];
+    for (std::size_t j = first; j < results.size(); ++j) {
+      const SettingResult& other = results[j];
+      if (other.outcome.cost.particle_steps < one.outcome.cost.particle_steps && other.reached <= one.reached &&
+          shows_as_much(other, one))
+        one.dominated_by.push_back(other.outcome.name);
+    }
   }
-  return particle_steps;
-}
-
-/// Mean and standard error of the relative differences of a quantity, packing by packing.
-QuantityError error_of(const std::string& quantity, const std::vector<double>& ours,
-                       const std::vector<double>& reference) {
-  const double n = static_cast<double>(ours.size());
-  double mean_ours = 0, mean_reference = 0;
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    mean_ours += ours[i] / n;
-    mean_reference += reference[i] / n;
-  }
-  QuantityError e{quantity, mean_ours, mean_ours / mean_reference - 1, 0};
-  double squares = 0;
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    const double difference = (ours[i] - reference[i]) / mean_reference;
-    squares += (difference - e.error) * (difference - e.error);
-  }
-  e.standard_error = std::sqrt(squares / (n - 1) / n);
-  return e;
 }
 
 }  // namespace
 
-std::pair<std::string, Json> change_from(const std::string& text) {
-  const std::size_t at = text.find('=');
-  if (at == std::string::npos || at == 0 || at + 1 == text.size())
-    throw InvalidInput(fmt::format("'{}': is no change; give KEY=VALUE with a key of SPEC", text));
-  const std::string value = text.substr(at + 1);
-  const Json number = Json::parse(value, nullptr, false);
-  return {text.substr(0, at), number.is_number() ? number : Json(value)};
-}
-
-Setting setting_of(const std::string& name, const Spec& base, const Changes& changes) {
-  Json document = Json(spec_to_json(base));
-  for (const auto& [key, value] : changes) document[key] = value;
-  return {name, changes, spec_from_json(document, name)};
-}
-
-PackingQuantities quantities_of(const Dataset& dataset, std::uint64_t seed) {
-  std::vector<TestRecord> tests;
+Cost cost_of(const Dataset& dataset) {
+  Cost cost;
+  std::set<std::string> counted;
   for (const DatasetTest& test : dataset.tests) {
-    if (test.record.role == Role::calibration && test.record.packing.seed == seed) tests.push_back(test.record);
+    if (test.record.role != Role::calibration) continue;
+    if (!test.run.empty() && !counted.insert(test.run).second) continue;
+    cost.particle_steps += static_cast<double>(test.cost.steps) * static_cast<double>(test.record.packing.particles);
+    cost.seconds += test.cost.seconds;
   }
-  const fit::DataSet data = fit::check_and_sort(tests);
-  const fit::CalibrationOptions options;
-  fit::Calibration c = fit::nothing_known();
-  fit::fit_unloading_laws("ISO unloading", fit::isotropic_series(data, options), c, options, {});
-  fit::fit_shear_laws(data, c, options, {});
-
-  PackingQuantities result;
-  const auto add = [&](const std::string& name, double value) {
-    result.names.push_back(name);
-    result.values.push_back(value);
-  };
-  const bool has_pressure = fit::has_values(c, "pressure"), has_coordination = fit::has_values(c, "coordination");
-  for (const fit::ShearFit& shear : c.shear) {
-    const std::string at = "@" + density_text(std::round(shear.nu * 1e6) / 1e6);
-    add("P_star" + at, has_pressure && has_coordination ? c.parameters.isotropic.P_star(shear.nu) : kMissing);
-    add("C_star" + at, has_coordination ? c.parameters.isotropic.coordination.C_star(shear.nu) : kMissing);
-    add("s_max" + at, value_of(shear.s_max));
-    add("beta_s" + at, value_of(shear.beta_s));
-    add("F_max" + at, value_of(shear.F_max));
-    add("beta_F" + at, value_of(shear.beta_F));
-  }
-  add("nu_c", has_pressure ? c.parameters.isotropic.pressure.nu_c : kMissing);
-  return result;
+  return cost;
 }
 
-SettingResult compare_setting(const Setting& setting, const Dataset& dataset, const Dataset& reference) {
-  SettingResult result;
-  result.setting = setting;
-  result.particle_steps = cost_of(dataset, result.seconds);
-  std::vector<PackingQuantities> ours, theirs;
-  for (const std::uint64_t seed : reference.seeds) {
-    ours.push_back(quantities_of(dataset, seed));
-    theirs.push_back(quantities_of(reference, seed));
+std::vector<std::uint64_t> packings_of(const Dataset& dataset) {
+  std::set<std::uint64_t> seeds;
+  for (const DatasetTest& test : dataset.tests) {
+    if (test.record.role == Role::calibration) seeds.insert(test.record.packing.seed);
   }
+  return {seeds.begin(), seeds.end()};
+}
+
+SettingResult compare_setting(const SettingOutcome& setting, const SettingOutcome& reference, Packings packings) {
+  SettingResult result{setting, {}, kMissing, kMissing, kMissing, kMissing, {}};
+  double errors = 0, floors = 0, samplings = 0;
   int counted = 0;
-  for (std::size_t q = 0; q < theirs.front().names.size(); ++q) {
-    std::vector<double> a, b;
-    for (std::size_t i = 0; i < ours.size(); ++i) {
-      a.push_back(ours[i].values.at(q));
-      b.push_back(theirs[i].values.at(q));
-    }
-    const QuantityError e = error_of(theirs.front().names[q], a, b);
+  for (const StudyQuantity& theirs : reference.quantities) {
+    const auto found = std::find_if(setting.quantities.begin(), setting.quantities.end(),
+                                    [&](const StudyQuantity& q) { return q.name == theirs.name; });
+    const QuantityError e =
+        compare(found == setting.quantities.end() ? StudyQuantity{} : *found, setting.seeds, theirs, reference.seeds);
     result.errors.push_back(e);
-    if (e.quantity == "nu_c" || !std::isfinite(e.error)) continue;
-    result.error += e.error * e.error;
-    result.floor += e.standard_error * e.standard_error;
+    if (!e.in_error || !std::isfinite(e.error)) continue;
+    errors += e.error * e.error;
+    floors += e.standard_error * e.standard_error;
+    samplings += e.sampling * e.sampling;
     ++counted;
   }
-  result.error = std::sqrt(result.error / counted);
-  result.floor = std::sqrt(result.floor / counted);
+  if (counted == 0) return result;
+  result.error = std::sqrt(errors / counted);
+  result.floor = std::sqrt(floors / counted);
+  result.sampling = std::sqrt(samplings / counted);
+  const double noise = packings == Packings::given ? floors : samplings;
+  result.reached = std::sqrt((std::max(errors - floors, 0.0) + noise) / counted);
   return result;
 }
 
-void find_dominated(std::vector<SettingResult>& results) {
-  const auto reached = [](const SettingResult& r) { return std::max(r.error, r.floor); };
-  for (std::size_t i = 1; i < results.size(); ++i) {
-    SettingResult& one = results[i];
-    one.dominated = std::any_of(results.begin() + 1, results.end(), [&](const SettingResult& other) {
-      return other.particle_steps < one.particle_steps && reached(other) <= reached(one);
-    });
-  }
+SettingsStudy study_of(const std::string& kind, const std::string& error, Packings packings, const Json& base,
+                       const std::vector<SettingOutcome>& outcomes, std::size_t judged) {
+  SettingsStudy study{kind, error, packings, base, judged, {}};
+  for (const SettingOutcome& outcome : outcomes)
+    study.results.push_back(compare_setting(outcome, outcomes.front(), packings));
+  find_dominated(study.results, judged);
+  return study;
 }
 
 }  // namespace grainlaw::app

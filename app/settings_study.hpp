@@ -1,62 +1,70 @@
 #pragma once
-// What a setting of the engine costs, and how far its results are from those of a reference: the same packings (by seed) at
-// every setting, quantities of the law from each packing by itself, differences from the reference averaged over the
-// packings. Costs are counted in particle-steps; seconds are beside them.
+// What settings cost, and how far their results are from those of a reference. Over the quantities of a setting,
+//   error^2    = mean of their squared errors            floor^2    = mean of their squared standard errors
+//   sampling^2 = mean of their squared 95 % intervals    reached^2  = max(error^2 - floor^2, 0) + noise^2
+// error^2 - floor^2 estimates the square of what the setting itself does. The noise that comes on top is the floor where all
+// settings have the same packings, of which only differences count, and sampling where packings are chosen, too: the interval
+// is all that users of the setting have, and few packings do not know their own scatter (two: t = 12.7). Costs are counted in
+// particle-steps; seconds are beside them.
 
+#include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/files/dataset.hpp"
-#include "app/files/spec_file.hpp"
+#include "app/key_changes.hpp"
+#include "app/study_quantity.hpp"
 
 namespace grainlaw::app {
 
-/// Keys of SPEC and the values to give them.
-using Changes = std::vector<std::pair<std::string, Json>>;
+enum class Packings {
+  given,   ///< the same at every setting
+  chosen,  ///< their number, too, belongs to a setting
+};
 
-struct Setting {
+struct Cost {
+  double particle_steps = 0;  ///< of all runs
+  double seconds = 0;         ///< likewise, of one thread [s]
+  double fit_seconds = 0;     ///< of the fit, of all threads; 0: there is none [s]
+};
+
+/// Of the calibration tests; a run that gave several of them counts once.
+Cost cost_of(const Dataset& dataset);
+
+/// Seeds of the calibration tests, ascending.
+std::vector<std::uint64_t> packings_of(const Dataset& dataset);
+
+/// What a setting has shown.
+struct SettingOutcome {
   std::string name;  ///< "base", "reference", "time_step_fraction=0.2", ...
   Changes changes;   ///< of the base
-  Spec spec;
-};
-
-/// Parses "key=value": a number, else text. Throws InvalidInput.
-std::pair<std::string, Json> change_from(const std::string& text);
-
-/// The base spec with `changes`. Throws InvalidInput naming what the SPEC refuses.
-Setting setting_of(const std::string& name, const Spec& base, const Changes& changes);
-
-/// What one packing says of the law: P_star@nu and C_star@nu (Eqs. 11, 14), s_max@nu, beta_s@nu, F_max@nu, beta_F@nu
-/// (Eqs. 17, 18), and nu_c (Eq. 14).
-struct PackingQuantities {
-  std::vector<std::string> names;
-  std::vector<double> values;  ///< NaN where the packing does not show it [-]
-};
-PackingQuantities quantities_of(const Dataset& dataset, std::uint64_t seed);
-
-/// A quantity at a setting, mean over the packings.
-struct QuantityError {
-  std::string quantity;
-  double value = 0;           ///< [-]
-  double error = 0;           ///< relative difference from the reference, mean over packings [-]
-  double standard_error = 0;  ///< of `error`, from the scatter over packings [-]
+  Cost cost;
+  std::vector<std::uint64_t> seeds;  ///< of the packings, in the order of the influence's columns
+  std::vector<StudyQuantity> quantities;
+  std::string model;  ///< rung of the law that predicts; empty: none does
+  std::string note;   ///< what went wrong; may be empty
 };
 
 struct SettingResult {
-  Setting setting;
-  double particle_steps = 0;  ///< of all packings and tests
-  double seconds = 0;         ///< likewise, of one thread [s]
-  std::vector<QuantityError> errors;
-  double error = 0;        ///< root mean square of the errors over the quantities but nu_c [-]
-  double floor = 0;        ///< likewise of their standard errors: what scatter alone makes [-]
-  bool dominated = false;  ///< another setting costs less, and its error is not larger (the floor counts as reached)
+  SettingOutcome outcome;
+  std::vector<QuantityError> errors;                       ///< the reference's quantities
+  double error = 0, floor = 0, sampling = 0, reached = 0;  ///< NaN where it shows none of them [-]
+  std::vector<std::string> dominated_by;                   ///< settings that cost less and reach as much
 };
 
-/// `result` against `reference`, which has the same seeds. Errors of the reference itself are zero.
-SettingResult compare_setting(const Setting& setting, const Dataset& result, const Dataset& reference);
+SettingResult compare_setting(const SettingOutcome& setting, const SettingOutcome& reference, Packings packings);
 
-/// Sets `dominated` of all but the first, the reference.
-void find_dominated(std::vector<SettingResult>& results);
+struct SettingsStudy {
+  std::string kind;   ///< "dem", "chain", "fit"
+  std::string error;  ///< what an error is, in words
+  Packings packings = Packings::given;
+  Json base;               ///< what the changes are changes of
+  std::size_t judged = 0;  ///< the default among `results`; those before it are a reference only
+  std::vector<SettingResult> results;
+};
+
+/// Compares with the first of `outcomes`, and finds who dominates whom; a reference that is not judged takes no part.
+SettingsStudy study_of(const std::string& kind, const std::string& error, Packings packings, const Json& base,
+                       const std::vector<SettingOutcome>& outcomes, std::size_t judged);
 
 }  // namespace grainlaw::app

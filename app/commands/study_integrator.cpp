@@ -7,8 +7,7 @@
 
 #include "app/files/parameters_file.hpp"
 #include "app/output_folder.hpp"
-#include "app/provenance.hpp"
-#include "app/report/svg_file.hpp"
+#include "app/study_output.hpp"
 #include "app/work_precision.hpp"
 #include "model/error.hpp"
 #include "predict/batch.hpp"
@@ -165,7 +164,7 @@ report::Figure figure_of(const std::vector<WorkPrecision>& studies) {
 }
 
 std::string text_of(const std::vector<WorkPrecision>& studies, const std::vector<BatchTime>& times, int paths,
-                    int threads, const std::filesystem::path& file) {
+                    int threads) {
   std::string text = fmt::format("least microseconds of a path with an error of at most {:.0e}\n", kWantedError);
   for (const WorkPrecision& study : studies) {
     text += fmt::format("{}: {}\n", study.path.name, study.path.description);
@@ -181,7 +180,7 @@ std::string text_of(const std::vector<WorkPrecision>& studies, const std::vector
     text += fmt::format("batch: {} paths on {} threads by {} at {:.0e}: {:.2f} s\n", paths, threads,
                         predict::to_string(time.integrator), time.accuracy, time.seconds);
   }
-  return text + file.string() + "\n";
+  return text;
 }
 
 }  // namespace
@@ -197,7 +196,7 @@ ExitCode study_integrator(const StudyIntegratorOptions& options, Session& sessio
   }
   const std::vector<BatchTime> times = time_batch(law, studies.front(), options, session);
 
-  OrderedJson document{{"format", "grainlaw study"}, {"format_version", 1}, {"study", "integrator"}};
+  OrderedJson document = study_document("integrator");
   document["parameters"] = law.source;
   document["values"] = values_to_json(law.parameters);
   document["coupling"] = to_string(law.coupling);
@@ -206,11 +205,8 @@ ExitCode study_integrator(const StudyIntegratorOptions& options, Session& sessio
   OrderedJson& panels = document["panels"] = OrderedJson::array();
   for (const WorkPrecision& study : studies) panels.push_back(panel_to_json(study));
   document["batch"] = batch_to_json(times, options.paths, session.threads);
-  document["provenance"] = provenance(session.command, session.threads, session.stopwatch);
-  write_json(options.output / "study.json", document);
-  report::write_svg(options.output / "work_precision.svg", figure_of(studies));
-  print_result(session.json ? json_text(document)
-                            : text_of(studies, times, options.paths, session.threads, options.output / "study.json"));
+  finish_study(options.output, document, "work_precision.svg", figure_of(studies),
+               text_of(studies, times, options.paths, session.threads), session);
   return ExitCode::ok;
 }
 

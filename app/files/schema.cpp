@@ -182,7 +182,7 @@ struct Schemas {
                                       {Schema::dataset, "dataset.schema.json"},
                                       {Schema::parameters, "parameters.schema.json"},
                                       {Schema::study, "study.schema.json"},
-                                      {Schema::study_dem, "study_dem.schema.json"},
+                                      {Schema::study_settings, "study_settings.schema.json"},
                                       {Schema::plan, "plan.schema.json"}}) {
       whole[which] = load(file);
       for_library[which] = without_unique_items(whole[which]);

@@ -8,7 +8,7 @@
 
 namespace grainlaw::app {
 
-enum class Schema { spec, path, test, dataset, parameters, study, study_dem, plan };
+enum class Schema { spec, path, test, dataset, parameters, study, study_settings, plan };
 
 /// The schema with every reference replaced by what it refers to.
 const Json& schema(Schema which);

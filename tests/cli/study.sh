@@ -28,6 +28,8 @@ jq -e '.settings[2].particle_steps < 0.7 * .settings[1].particle_steps and .sett
 jq -e '.settings[3].error == .settings[1].error and .settings[3].particle_steps == .settings[1].particle_steps' dem/study.json >/dev/null ||
   fail 'no change made a difference'
 jq -e '[.settings[1].quantities[].quantity] | length == 13 and contains(["beta_F@0.78", "nu_c"])' dem/study.json >/dev/null || fail quantities
+jq -e '.default.setting == "base" and .default.dominated_by == .settings[1].dominated_by and .reference == "reference"
+  and all(.settings[]; .packings == 2 and .model == null and .dominated == (.dominated_by | length > 0))' dem/study.json >/dev/null || fail verdict
 grep -q 'time_step_fraction=0.17' dem/settings.svg || fail 'the figure lacks a setting'
 for bad in 'time_step_fraction' 'no_such_key=1' 'time_step_fraction=9' 'seeds=7'; do
   code=0

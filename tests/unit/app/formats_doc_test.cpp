@@ -142,7 +142,7 @@ TEST(FormatsDocument, NamesEveryFileOfASchema) {
   const std::string text = read_all(kDocument);
   for (const char* file :
        {"spec.schema.json", "path.schema.json", "test.schema.json", "dataset.schema.json", "parameters.schema.json",
-        "study.schema.json", "study_dem.schema.json", "plan.schema.json"}) {
+        "study.schema.json", "study_settings.schema.json", "plan.schema.json"}) {
     EXPECT_NE(text.find(file), std::string::npos) << file;
     EXPECT_TRUE(std::filesystem::exists(kDocument.parent_path() / "schemas" / file));
   }

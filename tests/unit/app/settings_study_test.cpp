@@ -4,70 +4,79 @@
 
 #include <cmath>
 
-#include "model/error.hpp"
-#include "tests/support/synthetic_dataset.hpp"
+#include "model/student.hpp"
+#include "tests/support/study_dataset.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-/// Data of three packings whose fabric is `factor` times the published, times (1 + scatter * seed's number).
-Dataset dataset(double factor, double scatter) {
-  Dataset all;
-  testing::SyntheticOptions options;
-  options.densities = {0.70, 0.78};
-  options.sequences = false;
-  for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    LawParameters<double> law = testing::synthetic_truth();
-    law.fabric_max.Q_c *= factor * (1 + scatter * (static_cast<double>(seed) - 2));
-    options.seeds = {seed};
-    for (TestRecord& record : testing::SyntheticDataset(law, options).records()) {
-      record.packing.particles = 100;
-      all.tests.push_back({record, "", "", {10, 1e-8, 2.5}, {}});
-    }
-    all.seeds.push_back(seed);
-  }
-  return all;
-}
-
-TEST(SettingsStudy, ErrorsAreMeansOverPackingsOfPairedDifferences) {
-  const SettingResult r = compare_setting({"tenth", {}, {}}, dataset(1.1, 0.02), dataset(1, 0));
-  for (const QuantityError& e : r.errors) {
-    const bool fabric = e.quantity.starts_with("F_max");
-    EXPECT_NEAR(e.error, fabric ? 0.1 : 0, 2e-3) << e.quantity;
-    // packings deviate by -.022, 0, +.022
-    EXPECT_NEAR(e.standard_error, fabric ? 0.022 / std::sqrt(3.0) : 0, 1e-3) << e.quantity;
-  }
-  ASSERT_EQ(r.errors.size(), 13u);
-  EXPECT_NEAR(r.error, 0.1 / std::sqrt(6.0), 1e-3);  // two of twelve quantities
-  EXPECT_EQ(r.particle_steps, 9 * 10 * 100);         // ISO and two D2 for each of three packings
-  EXPECT_DOUBLE_EQ(r.seconds, 9 * 2.5);
-  EXPECT_EQ(compare_setting({"same", {}, {}}, dataset(1, 0), dataset(1, 0)).error, 0);
-}
-
-TEST(SettingsStudy, ASettingIsDominatedByACheaperOneThatIsNotWorse) {
-  const auto result = [](double cost, double error, double floor) {
-    SettingResult r;
-    r.particle_steps = cost;
-    r.error = error;
-    r.floor = floor;
-    return r;
+/// Two numbers, each off by `error` of 1 and known to `scatter` with packings of the given seeds.
+SettingOutcome outcome(const std::string& name, double cost, double error, double scatter,
+                       const std::vector<std::uint64_t>& seeds) {
+  const auto n = static_cast<Eigen::Index>(seeds.size());
+  const Eigen::MatrixXd psi = Eigen::MatrixXd::Constant(1, n, scatter / std::sqrt(static_cast<double>(n)));
+  const auto number = [&](const char* q, double x) {
+    return StudyQuantity{q, Eigen::VectorXd::Constant(1, x), psi, true};
   };
-  std::vector<SettingResult> all{result(99, 0, 0), result(4, 0.02, 0.01), result(3, 0.03, 0.01), result(5, 0.025, 0.01),
-                                 result(2, 0.001, 0.025)};
-  find_dominated(all);
-  // the last one's error is below its floor, which then counts
-  const std::vector<bool> expected{false, false, true, true, false};
-  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].dominated, expected[i]) << i;
+  return {name, {}, {cost, 0, 0}, seeds, {number("a", 1 + error), number("b", 1 - error)}, "", ""};
 }
 
-TEST(SettingsStudy, ChangesAreKeysOfTheSpec) {
-  EXPECT_EQ(change_from("strain_rate=69").second, Json(69));
-  EXPECT_EQ(change_from("precision=double").second, Json("double"));
-  for (const char* bad : {"strain_rate", "=3", "strain_rate="}) EXPECT_THROW(change_from(bad), InvalidInput) << bad;
-  EXPECT_EQ(
-      setting_of("x", spec_from_json(Json::object(), "x"), {{"particles", 500}}).spec.preparation.packing.particles,
-      500);
-  EXPECT_THROW(setting_of("x", spec_from_json(Json::object(), "x"), {{"particle", 500}}), InvalidInput);
+TEST(SettingsStudy, NoiseIsTheFloorOfGivenPackingsAndTheSamplingOfChosenOnes) {
+  const SettingOutcome reference = outcome("reference", 9, 0, 0.03, {1, 2}),
+                       setting = outcome("x", 1, 0.05, 0.04, {8, 9});
+  for (const Packings packings : {Packings::given, Packings::chosen}) {
+    const SettingResult r = compare_setting(setting, reference, packings);
+    EXPECT_NEAR(r.error, 0.05, 1e-14);
+    EXPECT_NEAR(r.floor, 0.05, 1e-14);  // of .03 and .04, other packings
+    EXPECT_NEAR(r.sampling, student_95(1) * 0.04, 1e-12);
+    // all of the error may be chance
+    EXPECT_NEAR(r.reached, packings == Packings::given ? 0.05 : r.sampling, 1e-9);
+  }
+  const SettingResult paired = compare_setting(outcome("x", 1, 0.05, 0.04, {1, 2}), reference, Packings::chosen);
+  EXPECT_NEAR(paired.floor, 0.01, 1e-14);
+  EXPECT_NEAR(paired.reached, std::hypot(std::sqrt(0.0025 - 0.0001), paired.sampling), 1e-14);
+}
+
+TEST(SettingsStudy, ADefaultIsDominatedByWhatIsCheaperAndNotWorse) {
+  const std::vector<std::uint64_t> seeds{1, 2};
+  const auto study = [&](const SettingOutcome& other) {
+    return study_of("dem", "", Packings::given, {},
+                    {outcome("reference", 9, 0, 0, seeds), outcome("base", 4, 0.02, 0.01, seeds), other}, 1);
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(study(outcome("better", 3, 0.01, 0.01, seeds)).results[1].dominated_by, Names{"better"});
+  EXPECT_EQ(study(outcome("as good", 3, 0.02, 0.01, seeds)).results[1].dominated_by, Names{"as good"});
+  EXPECT_EQ(study(outcome("worse", 3, 0.03, 0.01, seeds)).results[1].dominated_by, Names{});
+  EXPECT_EQ(study(outcome("as dear", 4, 0.01, 0.01, seeds)).results[1].dominated_by, Names{});
+  EXPECT_EQ(study(outcome("dearer, worse", 5, 0.03, 0.01, seeds)).results[2].dominated_by, Names{"base"});
+  // its error is below its floor, which then counts
+  EXPECT_EQ(study(outcome("noisy", 3, 0.001, 0.025, seeds)).results[1].dominated_by, Names{});
+  // a reference is no competitor
+  EXPECT_TRUE(study(outcome("dear", 10, 0.03, 0.01, seeds)).results[0].dominated_by.empty());
+}
+
+TEST(SettingsStudy, WhatShowsLessDominatesNothing) {
+  const std::vector<std::uint64_t> seeds{1, 2};
+  SettingOutcome half = outcome("half", 1, 0.001, 0.001, seeds);
+  half.quantities.pop_back();
+  const auto base = outcome("base", 4, 0.02, 0.001, seeds), reference = outcome("reference", 9, 0, 0, seeds);
+  const SettingsStudy study = study_of("dem", "", Packings::given, {}, {reference, base, half}, 1);
+  EXPECT_NEAR(study.results[2].error, 0.001, 1e-14);
+  EXPECT_TRUE(study.results[1].dominated_by.empty());
+  half.quantities.clear();
+  EXPECT_TRUE(std::isnan(compare_setting(half, reference, Packings::given).reached));
+}
+
+TEST(SettingsStudy, RunsAreCountedOnceAndCalibrationTestsOnly) {
+  Dataset dataset = testing::study_dataset(1, 0);
+  const std::size_t tests = dataset.tests.size();
+  EXPECT_EQ(cost_of(dataset).particle_steps, static_cast<double>(tests) * 10 * 100);
+  EXPECT_DOUBLE_EQ(cost_of(dataset).seconds, static_cast<double>(tests) * 2.5);
+  dataset.tests[0].run = dataset.tests[1].run = "one run";
+  dataset.tests[2].record.role = Role::validation;
+  EXPECT_EQ(cost_of(dataset).particle_steps, static_cast<double>(tests - 2) * 10 * 100);
+  std::erase_if(dataset.tests, [](const DatasetTest& test) { return test.record.packing.seed == 2; });
+  EXPECT_EQ(packings_of(dataset), (std::vector<std::uint64_t>{1, 3}));
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+#include "app/commands/study_chain.hpp"
+
+#include <fmt/format.h>
+
+#include "app/calibrated_setting.hpp"
+#include "app/files/study_json.hpp"
+#include "app/output_folder.hpp"
+#include "app/report/figure_study.hpp"
+#include "app/spec_settings.hpp"
+#include "app/study_output.hpp"
+#include "app/study_table.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+constexpr const char* kError =
+    "root mean square over P_star, s_par, F_par of their differences from the reference's prediction, root mean square "
+    "along the path over the largest value";
+
+}  // namespace
+
+ExitCode study_chain(const StudyChainOptions& options, Session& session) {
+  const std::vector<SpecSetting> settings = settings_of(options.spec, options.reference, options.vary);
+  const Path path = study_path(options.path);
+  const std::size_t judged = options.reference.empty() ? 0 : 1;
+  make_output_folder(options.output);
+  std::vector<SettingOutcome> outcomes;
+  std::vector<double> densities;
+  for (const SpecSetting& setting : settings) {
+    const Dataset dataset = run_setting(setting, options.output, session);
+    if (outcomes.empty()) densities = shear_densities(dataset);
+    fit::CalibrationOptions fit_options;
+    fit_options.threads = session.threads;
+    fit_options.coupling = setting.spec.coupling;
+    outcomes.push_back(
+        calibrated_setting(setting.name, setting.changes, dataset, fit_options, densities, path, session));
+    if (outcomes.front().model.empty())
+      throw InvalidInput(fmt::format("{}: predicts nothing to compare with: {}", setting.name, outcomes.front().note));
+  }
+  const SettingsStudy study =
+      study_of("chain", kError, Packings::chosen, Json(spec_to_json(settings[judged].spec)), outcomes, judged);
+  finish_study(options.output, study_to_json(study), "settings.svg", report::figure_of(study), study_table(study),
+               session);
+  return ExitCode::ok;
+}
+
+}  // namespace grainlaw::app

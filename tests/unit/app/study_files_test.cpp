@@ -1,0 +1,71 @@
+// What a study of settings leaves: study.json by its schema, the table, the figure.
+
+#include <gtest/gtest.h>
+
+#include "app/files/schema.hpp"
+#include "app/files/study_json.hpp"
+#include "app/report/figure_study.hpp"
+#include "app/report/svg_figure.hpp"
+#include "app/study_table.hpp"
+#include "model/student.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+SettingOutcome outcome(const std::string& name, double cost, double value) {
+  const Eigen::MatrixXd psi = Eigen::MatrixXd::Constant(1, 2, 0.005);
+  return {name,     {{"rows", 20}}, {cost, 1, 2}, {1, 2}, {{"s_par", Eigen::VectorXd::Constant(1, value), psi, true}},
+          "memory", "a note"};
+}
+
+SettingsStudy study(double cheap) {
+  return study_of("chain", "in words", Packings::chosen, {{"rows", 40}},
+                  {outcome("base", 1e9, 1), outcome("cheap", 5e8, cheap), outcome("dear", 2e9, 1.2)}, 0);
+}
+
+TEST(StudyFiles, FollowTheSchema) {
+  OrderedJson document = study_to_json(study(1.1));
+  document["provenance"] = OrderedJson::object();
+  EXPECT_NO_THROW(check_schema(Json(document), Schema::study_settings, "study.json"));
+  EXPECT_EQ(document["default"]["setting"], "base");
+  EXPECT_EQ(document["default"]["dominated"], false);
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(document["settings"][2]["dominated_by"].get<Names>(), (Names{"base", "cheap"}));
+  EXPECT_EQ(study_to_json(study(1))["default"]["dominated_by"].get<Names>(), Names{"cheap"});
+  document["settings"][0].erase("sampling");
+  EXPECT_THROW(check_schema(Json(document), Schema::study_settings, "study.json"), std::exception);
+}
+
+TEST(StudyFiles, TheTableSaysWhetherTheDefaultIsDominated) {
+  EXPECT_NE(study_table(study(1.1)).find("base is not dominated\n"), std::string::npos);
+  EXPECT_NE(study_table(study(1)).find("base is dominated by cheap\n"), std::string::npos);
+  SettingsStudy nothing = study(1);
+  nothing.results[0].reached = std::nan("");
+  EXPECT_NE(study_table(nothing).find("base shows nothing to be judged by\n"), std::string::npos);
+}
+
+TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
+  using namespace report;
+  const Panel free = figure_of(study(1.1)).panels.front(), dominated = figure_of(study(1)).panels.front();
+  const auto series = [](const Panel& panel, const std::string& label) {
+    for (const Series& s : panel.series) {
+      if (to_plain(s.label) == label) return s;
+    }
+    return Series{};
+  };
+  EXPECT_EQ(series(free, "base").marker, Marker::star);
+  EXPECT_EQ(series(free, "base").colour, Colour::vermillion);
+  EXPECT_EQ(series(dominated, "base").colour, Colour::grey);
+  EXPECT_EQ(series(free, "dear").colour, Colour::grey);
+  EXPECT_NE(series(free, "cheap").colour, Colour::grey);
+  EXPECT_NE(series(free, "cheap").marker, Marker::star);
+  // the shade ends where the sampling does
+  const Series& shade = free.series.front();
+  ASSERT_EQ(shade.bands.size(), 1u);
+  for (std::size_t i = 0; i < shade.x.size(); ++i)
+    EXPECT_NEAR(shade.y[i] + shade.bands[0][i], student_95(1) * 0.005 * std::sqrt(2.0), 1e-12);
+  EXPECT_NE(render_svg(figure_of(study(1.1))).svg.find("class=\"band\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace grainlaw::app
