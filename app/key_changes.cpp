@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "app/one_line.hpp"
 #include "model/error.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 
 namespace grainlaw::app::report {
 namespace {
@@ -81,8 +80,10 @@ Figure figure_of(const SettingsStudy& study) {
   const double bottom = bottom_of(by_cost, study.packings);
   panel.y.from = bottom;
   for (const Series& series : floor_of(by_cost, study.packings, bottom)) panel.series.push_back(series);
-  for (std::size_t i = study.judged + 1; i < study.results.size(); ++i)
-    panel.series.push_back(point_of(study.results[i], i - study.judged - 1));
+  for (std::size_t i = study.judged + 1; i < study.results.size(); ++i) {
+    if (std::isfinite(study.results[i].reached))
+      panel.series.push_back(point_of(study.results[i], i - study.judged - 1));
+  }
   Series star = point_of(study.results[study.judged], 0);
   star.marker = Marker::star;
   star.open_marker = false;
