@@ -7,7 +7,6 @@
 #include "app/files/parameters_file.hpp"
 #include "app/files/spec_file.hpp"
 #include "app/uncertainty.hpp"
-#include "model/error.hpp"
 #include "predict/parameter_step.hpp"
 #include "predict/predict.hpp"
 
@@ -57,15 +56,10 @@ Eigen::MatrixXd influence_of(const fit::Calibration& calibration, const std::vec
 }  // namespace
 
 Rung richest_rung(const fit::Calibration& calibration) {
-  const ParametersFile parameters{calibration, "", {}};
   for (const Rung rung : {Rung::memory, Rung::evolution}) {
-    try {
-      require_parameters(parameters, rung, "calibration");
-      return rung;
-    } catch (const InvalidInput&) {  // a poorer one may do
-    }
+    if (!missing_parameter(calibration, rung)) return rung;
   }
-  require_parameters(parameters, Rung::reduced, "calibration");
+  require_parameters({calibration, "", {}}, Rung::reduced, "calibration");
   return Rung::reduced;
 }
 
