@@ -18,7 +18,8 @@ for ((i = 0; i < ${SIGNALS:-8} || interrupted < 3; ++i)); do
   if ((i % 4 == 3)); then kill -"$signal" $pid 2>/dev/null || true; fi
   code=0
   wait $pid || code=$?
-  if ((code == 0)); then
+  # on its way out, with all results written, the program leaves signals to the system again
+  if ((code == 0)) || { [[ $(results out 2>/dev/null) == "$reference" ]] && ! grep -q 'grainlaw: interrupted' log; }; then
     check_finished out "SIG$signal came too late"
     rm -rf out
     continue
