@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "app/files/parameters_file.hpp"
 #include "app/files/path_file.hpp"
 #include "app/law_quantities.hpp"
 #include "app/provenance.hpp"
@@ -54,7 +55,8 @@ SettingOutcome calibrated_setting(const std::string& name, const Changes& change
     outcome.quantities = law_quantities(calibration, densities, outcome.seeds.size());
     if (path) {
       for (StudyQuantity& quantity : outcome.quantities) quantity.in_error = false;
-      const Rung rung = richest_rung(calibration);
+      require_parameters({calibration, "", {}}, Rung::reduced, "calibration");
+      const Rung rung = richest_rung(calibration).value();
       const auto predicted = predicted_quantities(calibration, *path, rung, outcome.seeds.size(), control);
       outcome.quantities.insert(outcome.quantities.begin(), predicted.begin(), predicted.end());
       outcome.model = to_string(rung);

@@ -55,12 +55,12 @@ Eigen::MatrixXd influence_of(const fit::Calibration& calibration, const std::vec
 
 }  // namespace
 
-Rung richest_rung(const fit::Calibration& calibration) {
-  for (const Rung rung : {Rung::memory, Rung::evolution}) {
-    if (!missing_parameter(calibration, rung)) return rung;
+std::optional<Rung> richest_rung(const fit::Calibration& calibration) {
+  std::optional<Rung> richest;
+  for (const Rung rung : kRungs) {
+    if (!missing_parameter(calibration, rung)) richest = rung;
   }
-  require_parameters({calibration, "", {}}, Rung::reduced, "calibration");
-  return Rung::reduced;
+  return richest;
 }
 
 std::vector<StudyQuantity> law_quantities(const fit::Calibration& calibration, const std::vector<double>& densities,

@@ -3,6 +3,8 @@
 // times the slope of the quantity. Costs no further fit, and is the error that bands are drawn of; where a fit is linear in
 // its parameters it is that of fits without each packing in turn.
 
+#include <optional>
+
 #include "app/study_quantity.hpp"
 #include "fit/calibrate.hpp"
 #include "model/law.hpp"
@@ -10,8 +12,8 @@
 
 namespace grainlaw::app {
 
-/// The richest rung of the law that is calibrated. Throws InvalidInput naming the parameter that even the first one misses.
-Rung richest_rung(const fit::Calibration& calibration);
+/// The richest rung of the law that is calibrated; nothing when even the reduced law has parameters without a value.
+std::optional<Rung> richest_rung(const fit::Calibration& calibration);
 
 /// P_star@nu, C_star@nu (Eqs. 11, 14), s_max@nu, beta_s@nu, F_max@nu, beta_F@nu (Eq. 20) at `densities`, and nu_c (Eq. 14);
 /// NaN where a law is not identified. `packings`: number of columns of the influence.

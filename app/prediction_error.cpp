@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "app/files/parameters_file.hpp"
+#include "app/law_quantities.hpp"
 #include "app/uncertainty.hpp"
 #include "predict/predict.hpp"
 
@@ -16,15 +16,6 @@ namespace {
 constexpr int kPointsPerSegment = 100;
 constexpr double kFromShear = 0.01;  // equations.md 0, errors
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// Nothing where the reduced law has parameters without a value.
-std::optional<Rung> richest(const fit::Calibration& c) {
-  std::optional<Rung> rung;
-  for (const Rung next : kRungs) {
-    if (!missing_parameter(c, next)) rung = next;
-  }
-  return rung;
-}
 
 /// Name of a test without its seed: runs of one path on several packings.
 std::string path_name(const std::string& test) { return test.substr(0, test.rfind("-s")); }
@@ -78,7 +69,7 @@ void set_discrepancy(const fit::Calibration& c, Rung rung, QuantityPrecision& pr
 PredictionError prediction_error(const fit::Calibration& c, const Path& path) {
   PredictionError error;
   const auto segments = resolve(path);
-  const std::optional<Rung> rung = richest(c);
+  const std::optional<Rung> rung = richest_rung(c);
   if (!rung) {
     error.quantities.push_back({"P_star", kNone, kNone, kNone, kNone});
     if (shear_direction(segments).norm() == 0) return error;
