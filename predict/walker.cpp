@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "model/error.hpp"
+#include "predict/dormand_prince.hpp"
 #include "predict/runge_kutta.hpp"
 #include "predict/segment_law.hpp"
 
@@ -42,6 +43,8 @@ std::string to_string(Integrator integrator) {
       return "adams";
     case Integrator::bdf:
       return "bdf";
+    case Integrator::dopri_5:
+      return "dopri_5";
     case Integrator::euler:
       return "euler";
     default:
@@ -57,8 +60,12 @@ struct Walker::Impl {
   std::optional<SegmentLaw> law;  // of the segment that is being walked
   std::optional<Cvode> cvode;
   std::optional<RungeKutta> runge_kutta;
+  std::optional<DormandPrinceWork> dormand_prince;
 
-  Arrival advance(std::span<double> y, double length) {
+  Arrival advance(Unknowns& y, double length) {
+    if (dormand_prince)
+      return integrate_dormand_prince(*law, y, length, {accuracy, kAbsoluteShare * accuracy, Method::adams, kMaxSteps},
+                                      *dormand_prince);
     if (runge_kutta) return runge_kutta->integrate(0, y, length);
     cvode->start(0, y, length);
     return cvode->advance(length, y);
@@ -82,14 +89,18 @@ struct Walker::Impl {
   }
 
   long rhs_evaluations() const {
+    if (dormand_prince) return dormand_prince->rhs_evaluations;
     return runge_kutta ? runge_kutta->rhs_evaluations() : cvode ? cvode->statistics().rhs_evaluations : 0;
   }
-  long steps() const { return runge_kutta ? runge_kutta->steps() : cvode ? cvode->statistics().steps : 0; }
+  long steps() const {
+    if (dormand_prince) return dormand_prince->steps;
+    return runge_kutta ? runge_kutta->steps() : cvode ? cvode->statistics().steps : 0;
+  }
 };
 
 Walker::Walker(Integrator integrator, double accuracy, const LawParameters<double>& parameters, Rung rung,
                Coupling coupling)
-    : impl_(new Impl{parameters, rung, coupling, accuracy, {}, {}, {}}) {
+    : impl_(new Impl{parameters, rung, coupling, accuracy, {}, {}, {}, {}}) {
   if (!(accuracy >= 1e-14 && accuracy < 1)) {
     throw InvalidInput(
         fmt::format("integrator {}: accuracy {} is outside [1e-14, 1)", to_string(integrator), accuracy));
@@ -100,6 +111,8 @@ Walker::Walker(Integrator integrator, double accuracy, const LawParameters<doubl
     const Method method = integrator == Integrator::adams ? Method::adams : Method::bdf;
     impl_->cvode.emplace(kUnknowns, Tolerances{accuracy, kAbsoluteShare * accuracy, method, kMaxSteps}, rate,
                          OdeEvent{}, scale);
+  } else if (integrator == Integrator::dopri_5) {
+    impl_->dormand_prince.emplace();
   } else if (integrator != Integrator::euler) {
     impl_->runge_kutta.emplace(kUnknowns, order_of(integrator), accuracy, kAbsoluteShare * accuracy, kMaxSteps, rate,
                                scale);
@@ -121,7 +134,7 @@ Walk Walker::walk(const std::vector<StraightSegment>& segments, const LawState<d
           "follow; use predict()",
           k));
     }
-    if (!self.cvode && !self.runge_kutta) {
+    if (!self.cvode && !self.runge_kutta && !self.dormand_prince) {
       walk.steps += self.euler(segments[k], state);
       walk.rhs_evaluations = walk.steps;
     } else {

@@ -170,10 +170,10 @@ std::string text_of(const std::vector<WorkPrecision>& studies, const std::vector
     text += fmt::format("{}: {}\n", study.path.name, study.path.description);
     for (const Integrator& integrator : predict::kIntegrators) {
       const WorkPoint* point = quickest(study, kWantedError, &integrator);
-      text += point ? fmt::format("  {:<6} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
+      text += point ? fmt::format("  {:<7} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
                                   predict::to_string(integrator), point->microseconds, point->rhs_evaluations,
                                   point->error, point->accuracy)
-                    : fmt::format("  {:<6} not reached\n", predict::to_string(integrator));
+                    : fmt::format("  {:<7} not reached\n", predict::to_string(integrator));
     }
   }
   for (const BatchTime& time : times) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "model/error.hpp"
@@ -50,14 +52,16 @@ TEST(Integrators, FollowTheClosedFormAtConstantVolume) {
   }
 }
 
-TEST(Integrators, RandomPathsByTwoSolversAgreeWithATightReference) {
+TEST(Integrators, RandomPathsBySeveralSolversAgreeWithATightReference) {
   const LawParameters<double> p = testing::coupled_parameters();
   std::mt19937_64 engine{7};
   const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine); };
   Walker reference(Integrator::erk_8, 1e-13, p, Rung::evolution, Coupling::energy);
-  Walker adams(Integrator::adams, 1e-9, p, Rung::evolution, Coupling::energy);
-  Walker explicit_5(Integrator::erk_5, 1e-9, p, Rung::evolution, Coupling::energy);
-  double off_adams = 0, off_explicit = 0;
+  constexpr std::array kCompared{Integrator::adams, Integrator::erk_5, Integrator::dopri_5};
+  std::vector<std::unique_ptr<Walker>> walkers;
+  for (const Integrator integrator : kCompared)
+    walkers.push_back(std::make_unique<Walker>(integrator, 1e-9, p, Rung::evolution, Coupling::energy));
+  std::array<double, kCompared.size()> off{};
   for (int i = 0; i < 200; ++i) {
     std::vector<PathSegment> legs;
     for (int k = 0; k < 5; ++k) {
@@ -71,15 +75,14 @@ TEST(Integrators, RandomPathsByTwoSolversAgreeWithATightReference) {
     }
     const auto path = path_from(uniform(0.69, 0.74), legs);
     const LawState<double> start = state_from_law(p, path[0].nu_start);
-    const auto expected = reference.walk(path, start).ends, by_adams = adams.walk(path, start).ends,
-               by_explicit = explicit_5.walk(path, start).ends;
-    for (std::size_t k = 0; k < path.size(); ++k) {
-      off_adams = std::max(off_adams, distance(by_adams[k], expected[k]));
-      off_explicit = std::max(off_explicit, distance(by_explicit[k], expected[k]));
+    const auto expected = reference.walk(path, start).ends;
+    for (std::size_t j = 0; j < walkers.size(); ++j) {
+      const auto ends = walkers[j]->walk(path, start).ends;
+      for (std::size_t k = 0; k < path.size(); ++k) off[j] = std::max(off[j], distance(ends[k], expected[k]));
     }
   }
-  expect_figure("integrators.random_paths.adams_error_over_rtol", off_adams / 1e-9, 10);
-  expect_figure("integrators.random_paths.erk_5_error_over_rtol", off_explicit / 1e-9, 10);
+  for (std::size_t j = 0; j < off.size(); ++j)
+    expect_figure("integrators.random_paths." + to_string(kCompared[j]) + "_error_over_rtol", off[j] / 1e-9, 10);
 }
 
 TEST(Integrators, BatchesDoNotDependOnThreads) {
