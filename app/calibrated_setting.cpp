@@ -12,18 +12,6 @@
 #include "model/error.hpp"
 
 namespace grainlaw::app {
-namespace {
-
-std::vector<TestRecord> calibration_tests(const Dataset& dataset) {
-  std::vector<TestRecord> tests;
-  for (const DatasetTest& test : dataset.tests) {
-    if (test.record.role == Role::calibration) tests.push_back(test.record);
-  }
-  return tests;
-}
-
-}  // namespace
-
 std::vector<double> shear_densities(const Dataset& dataset) {
   std::set<double> densities;
   for (const DatasetTest& test : dataset.tests) {
@@ -43,7 +31,7 @@ Path study_path(const std::filesystem::path& file) {
 SettingOutcome calibrated_setting(const std::string& name, const Changes& changes, const Dataset& dataset,
                                   const fit::CalibrationOptions& options, const std::vector<double>& densities,
                                   const std::optional<Path>& path, Session& session) {
-  const std::vector<TestRecord> tests = calibration_tests(dataset);
+  const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
   SettingOutcome outcome{name, changes, cost_of(dataset), packings_of(dataset), {}, "", ""};
   session.progress.begin({1}, "");
   const RunControl control = session.progress.control(0, "fit of " + name, session.stop);

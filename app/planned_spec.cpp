@@ -65,7 +65,14 @@ std::vector<double> densities_for(const Path& path, int count, const dem::Prepar
 }
 
 Spec planned_spec(const Spec& frame, const PlanSettings& settings, const Path& path) {
-  Json document = Json(spec_to_json(frame));
+  Spec rehearsing = frame;
+  TestRequest& rehearsal = rehearsing.tests.emplace_back();
+  rehearsal.name = kRehearsal;
+  rehearsal.branch = path.branch;
+  rehearsal.densities = {path.nu};
+  rehearsal.segments = path.segments;
+  rehearsal.role = Role::validation;
+  Json document = Json(spec_to_json(rehearsing));
   const std::vector<double> densities = densities_for(path, settings.densities, frame.preparation);
   std::vector<std::uint64_t> seeds = frame.seeds;
   seeds.resize(std::min(seeds.size(), static_cast<std::size_t>(settings.packings)));
@@ -81,21 +88,22 @@ Spec planned_spec(const Spec& frame, const PlanSettings& settings, const Path& p
   return spec_from_json(document, "the plan's SPEC");
 }
 
-Spec calibration_only(Spec spec) {
-  std::erase_if(spec.tests, [](const TestRequest& test) { return test.role != Role::calibration; });
-  return spec;
+Spec rounds_of(Spec planned) {
+  std::erase_if(planned.tests,
+                [](const TestRequest& test) { return test.role != Role::calibration && test.name != kRehearsal; });
+  return planned;
 }
 
-Work work_of(const Spec& spec) {
-  Spec one = spec;
+Work work_of(const Spec& planned) {
+  Spec one = rounds_of(planned);
   one.seeds.resize(1);
-  const dem::PreparationOptions& o = spec.preparation;
+  const dem::PreparationOptions& o = planned.preparation;
   const double N = static_cast<double>(o.packing.particles);
   Work work;
   work.preparation = N * expected_steps(o);
   work.relaxed = N * static_cast<double>(o.keep_loading.size() + o.keep_unloading.size());
-  for (const PlannedTest& test : plan(calibration_only(one))) {
-    ++work.fitted_tests;
+  for (const PlannedTest& test : plan(one)) {
+    if (test.role == Role::calibration) ++work.fitted_tests;
     if (!test.branch_of_preparation) work.tests += N * expected_steps(o, resolve(test.path));
   }
   return work;

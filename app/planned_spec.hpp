@@ -13,14 +13,17 @@ namespace grainlaw::app {
 std::vector<double> densities_for(const Path& path, int count, const dem::PreparationOptions& frame);
 
 /// `frame` with the settings; seeds follow the frame's. Of the calibration tests, D2 and D3 start at the plan's densities and go
-/// to its strain, D2-ISO starts at three spread over the same range; others stay as they are. Other roles stay, too.
+/// to its strain, D2-ISO starts at three spread over the same range; others stay as they are. Other roles stay, too. Its last
+/// test is a rehearsal: `path` itself, of role validation, on every packing.
 Spec planned_spec(const Spec& frame, const PlanSettings& settings, const Path& path);
 
-/// Without its tests of other roles, from the same packings: what is run before the plan has ended.
-Spec calibration_only(Spec spec);
+inline constexpr const char* kRehearsal = "rehearsal";
 
-/// Work of one packing.
-Work work_of(const Spec& spec);
+/// With the calibration tests and the rehearsal alone, from the same packings: what is run before the plan has ended.
+Spec rounds_of(Spec planned);
+
+/// Work of one packing in the rounds.
+Work work_of(const Spec& planned);
 
 /// What the pilot has: small packings, driven fast, by a power of two faster than the frame's.
 PlanSettings pilot_settings(const Spec& frame);

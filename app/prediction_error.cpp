@@ -1,13 +1,14 @@
 #include "app/prediction_error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 
 #include "app/law_quantities.hpp"
 #include "app/uncertainty.hpp"
+#include "model/student.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::app {
@@ -17,56 +18,74 @@ constexpr int kPointsPerSegment = 100;
 constexpr double kFromShear = 0.01;  // equations.md 0, errors
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Name of a test without its seed: runs of one path on several packings.
-std::string path_name(const std::string& test) { return test.substr(0, test.rfind("-s")); }
+using RowValue = double (*)(const predict::PredictedRow&);
+using MeasuredValue = double Observation::*;
 
-/// Mean over packings of what the law is off by on a path, over the largest |value|, and its squared standard error.
-struct PathBias {
-  std::vector<double> biases;
-  double largest = 0;
-
-  double mean() const {
-    double sum = 0;
-    for (const double b : biases) sum += b;
-    return sum / static_cast<double>(biases.size()) / largest;
-  }
-  double error_squared() const {
-    const double n = static_cast<double>(biases.size());
-    if (n < 2) return std::numeric_limits<double>::infinity();
-    double squares = 0;
-    for (const double b : biases) squares += (b / largest - mean()) * (b / largest - mean());
-    return squares / (n - 1) / n;
-  }
+struct Quantity {
+  const char* name;
+  RowValue predicted;
+  MeasuredValue measured;
+  double predict::RowBand::*band;
 };
 
-void set_discrepancy(const fit::Calibration& c, Rung rung, QuantityPrecision& precision) {
-  std::map<std::string, PathBias> paths;
-  for (const fit::Stage& stage : c.stages) {
-    if (stage.name != to_string(rung)) continue;
-    for (const fit::TestResidual& r : stage.tests) {
-      if (!r.in_cost || r.rows == 0 || r.quantity != precision.quantity) continue;
-      PathBias& path = paths[path_name(r.test)];
-      path.biases.push_back(r.bias);
-      path.largest = std::max(path.largest, r.max_abs_data);
+constexpr std::array kQuantities{
+    Quantity{"P_star", [](const predict::PredictedRow& row) { return row.state.P; }, &Observation::P_star,
+             &predict::RowBand::P},
+    Quantity{"s_par", [](const predict::PredictedRow& row) { return row.s_par; }, &Observation::s_par,
+             &predict::RowBand::s_par},
+    Quantity{"F_par", [](const predict::PredictedRow& row) { return row.F_par; }, &Observation::F_par,
+             &predict::RowBand::F_par},
+};
+
+/// The law along each rehearsal, at its rows.
+std::vector<predict::Prediction> along(const fit::Calibration& c, Rung rung,
+                                       const std::vector<TestRecord>& rehearsals) {
+  std::vector<predict::Prediction> predictions;
+  for (const TestRecord& test : rehearsals) {
+    predictions.push_back(predict::predict(rung, c.parameters, c.coupling, resolve(test.path),
+                                           predict::state_from_law(c.parameters, test.path.nu),
+                                           predict::points_of(test), {}, {}, {}));
+  }
+  return predictions;
+}
+
+void set_discrepancy(const std::vector<TestRecord>& rehearsals, const std::vector<predict::Prediction>& predictions,
+                     const Quantity& quantity, bool shears, QuantityPrecision& precision) {
+  if (rehearsals.size() < 2) return;
+  const double n = static_cast<double>(rehearsals.size());
+  std::size_t common = rehearsals.front().rows.size();
+  for (const auto& prediction : predictions) common = std::min(common, prediction.rows.size());
+  double mean_squares = 0, variances = 0, largest = 0, rows = 0;
+  for (std::size_t i = 0; i < common; ++i) {
+    double sum = 0, squares = 0, level = 0;
+    for (std::size_t j = 0; j < rehearsals.size(); ++j) {
+      const Observation& row = rehearsals[j].rows[i];
+      const double off = shears && row.shear_path < kFromShear
+                             ? kNone
+                             : row.*quantity.measured - quantity.predicted(predictions[j].rows[i]);
+      sum += off;
+      squares += off * off;
+      level += row.*quantity.measured;
     }
+    if (!std::isfinite(sum)) continue;
+    const double mean = sum / n;
+    mean_squares += mean * mean;
+    variances += (squares - n * mean * mean) / (n - 1) / n;
+    largest = std::max(largest, std::abs(level / n));
+    ++rows;
   }
-  precision.discrepancy = precision.discrepancy_min = kNone;
-  double squared = 0, variance = 0, n = 0;
-  for (const auto& [name, path] : paths) {
-    const double b2 = path.mean() * path.mean(), e2 = path.error_squared();
-    if (!std::isfinite(e2)) continue;
-    squared += b2 - e2;
-    variance += 4 * b2 * e2 + 2 * e2 * e2;
-    ++n;
-  }
-  if (n == 0) return;
-  precision.discrepancy = std::sqrt(std::max(0.0, squared / n));
-  precision.discrepancy_min = std::sqrt(std::max(0.0, (squared - 2 * std::sqrt(variance)) / n));
+  if (rows == 0 || !(largest > 0)) return;
+  const double of_law = precision.half_width / student_95(n - 1);
+  const double e2 = variances / rows / (largest * largest) + of_law * of_law;
+  const double D2 = std::max(0.0, mean_squares / rows / (largest * largest) - e2);
+  precision.discrepancy = std::sqrt(D2);
+  precision.discrepancy_min = std::sqrt(std::max(0.0, D2 - 2 * std::sqrt(4 * D2 * e2 + 2 * e2 * e2)));
 }
 
 }  // namespace
 
-PredictionError prediction_error(const fit::Calibration& c, const Path& path) {
+PredictionError prediction_error(const fit::Calibration& c, const Path& path,
+                                 const std::vector<TestRecord>& rehearsals) {
   PredictionError error;
   const auto segments = resolve(path);
   const std::optional<Rung> rung = richest_rung(c);
@@ -82,32 +101,27 @@ PredictionError prediction_error(const fit::Calibration& c, const Path& path) {
       error.rung, c.parameters, c.coupling, segments, predict::state_from_law(c.parameters, path.nu),
       predict::uniform_points(segments, kPointsPerSegment), {}, {}, {}, {uncertainty.parameters, true});
   predict::add_bands(c.parameters, uncertainty, prediction);
+  const auto rehearsed = along(c, *rung, rehearsals);
   const bool shears = prediction.rows.back().shear_path > kFromShear;
-  const auto judge = [&](const char* quantity, auto value, double predict::RowBand::*band) {
+  for (const Quantity& quantity : kQuantities) {
     double largest = 0, widest = 0, squares = 0, rows = 0;
     for (const predict::PredictedRow& row : prediction.rows) {
-      if (!std::isfinite(value(row)) || (shears && row.shear_path < kFromShear)) continue;
-      largest = std::max(largest, std::abs(value(row)));
-      const double width = row.mean.*band;
+      const double value = quantity.predicted(row), width = row.mean.*quantity.band;
+      if (!std::isfinite(value) || (shears && row.shear_path < kFromShear)) continue;
+      largest = std::max(largest, std::abs(value));
       if (!std::isfinite(width)) continue;
       widest = std::max(widest, width);
       squares += width * width;
       ++rows;
     }
-    if (!(largest > 0)) return;
+    if (!(largest > 0)) continue;
     // a band of no width is that of parameters without an error: nothing is known of it
     const bool known = widest > 0;
-    QuantityPrecision precision{quantity, known ? std::sqrt(squares / rows) / largest : kNone,
+    QuantityPrecision precision{quantity.name, known ? std::sqrt(squares / rows) / largest : kNone,
                                 known ? widest / largest : kNone, kNone, kNone};
-    set_discrepancy(c, error.rung, precision);
+    if (known) set_discrepancy(rehearsals, rehearsed, quantity, shears, precision);
     error.quantities.push_back(precision);
-  };
-  judge(
-      "P_star", [](const auto& row) { return row.state.P; }, &predict::RowBand::P);
-  judge(
-      "s_par", [](const auto& row) { return row.s_par; }, &predict::RowBand::s_par);
-  judge(
-      "F_par", [](const auto& row) { return row.F_par; }, &predict::RowBand::F_par);
+  }
   return error;
 }
 

@@ -32,14 +32,6 @@ void remove_results_of_others(const fs::path& output, const std::string& spec) {
   for (const char* name : {"parameters.json", "calibration.json"}) fs::remove(output / name);
 }
 
-std::vector<TestRecord> tests_of(const Dataset& dataset, Role role) {
-  std::vector<TestRecord> tests;
-  for (const DatasetTest& test : dataset.tests) {
-    if (test.record.role == role) tests.push_back(test.record);
-  }
-  return tests;
-}
-
 /// Refuses before anything runs what no fit can be made of.
 void check_tests(const std::vector<TestRecord>& tests, const std::string& name) {
   const auto missing = [&](const char* what, const char* mode) {

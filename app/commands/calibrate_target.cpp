@@ -20,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<TestRecord> records(const Dataset& dataset) {
-  std::vector<TestRecord> tests;
-  for (const DatasetTest& test : dataset.tests) tests.push_back(test.record);
+std::vector<TestRecord> rehearsals(const Dataset& dataset) {
+  std::vector<TestRecord> tests = tests_of(dataset, Role::validation);
+  std::erase_if(tests, [](const TestRecord& test) { return !test.name.starts_with(kRehearsal); });
   return tests;
 }
 
@@ -121,17 +121,18 @@ ExitCode calibrate_for(const PrecisionTarget& target, const Spec& spec, const Ca
   double fit_seconds = 0;
   TargetActions actions;
   actions.calibrate = [&](const PlanSettings& settings) {
-    return prediction_error(
-        calibrate_with(calibration_only(planned_spec(spec, settings, target.path)), dataset, fit_seconds), target.path);
+    const fit::Calibration calibration =
+        calibrate_with(rounds_of(planned_spec(spec, settings, target.path)), dataset, fit_seconds);
+    return prediction_error(calibration, target.path, rehearsals(dataset));
   };
   actions.explore = [&](const PredictionError& known) {
     const CostRates rates = cost_rates(dataset, pilot_work, fit_seconds, session.threads);
     const fs::path folder = make_subfolder(options.output, "pilot");
     const auto coarser = [&](const char* name, const PlanSettings& settings) {
-      return records(
-          simulate(calibration_only(planned_spec(spec, settings, target.path)), make_subfolder(folder, name)));
+      return tests_of(simulate(rounds_of(planned_spec(spec, settings, target.path)), make_subfolder(folder, name)),
+                      Role::calibration);
     };
-    return findings_of(target, {pilot, spec.preparation.drive.strain_rate}, known, records(dataset),
+    return findings_of(target, {pilot, spec.preparation.drive.strain_rate}, known, tests_of(dataset, Role::calibration),
                        coarser("faster", faster(pilot)), coarser("smaller", smaller(pilot)), rates);
   };
   std::map<std::pair<int, double>, Work> works;  // by what does not scale
@@ -148,7 +149,7 @@ ExitCode calibrate_for(const PrecisionTarget& target, const Spec& spec, const Ca
   const TargetRun run = reach(target, pilot, plan_grid(pilot, spec.preparation.drive.strain_rate), actions);
 
   const Spec planned = planned_spec(spec, run.rounds.back().settings, target.path);
-  if (calibration_only(planned).tests.size() < planned.tests.size()) {
+  if (rounds_of(planned).tests.size() < planned.tests.size()) {
     session.progress.log("tests of other roles, of which the plan knew nothing");
     calibrate_with(planned, dataset, fit_seconds);
   }

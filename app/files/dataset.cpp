@@ -120,6 +120,14 @@ Dataset read_dataset(const fs::path& folder) {
   return dataset;
 }
 
+std::vector<TestRecord> tests_of(const Dataset& dataset, Role role) {
+  std::vector<TestRecord> tests;
+  for (const DatasetTest& test : dataset.tests) {
+    if (test.record.role == role) tests.push_back(test.record);
+  }
+  return tests;
+}
+
 void write_dataset_index(const fs::path& folder, Dataset& dataset) {
   OrderedJson tests = OrderedJson::array();
   for (DatasetTest& test : dataset.tests) {

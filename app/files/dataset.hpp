@@ -41,6 +41,9 @@ struct Dataset {
 /// Reads and checks everything. Throws InvalidInput naming file, key or row; digests that are given must match.
 Dataset read_dataset(const std::filesystem::path& folder);
 
+/// The records of one role.
+std::vector<TestRecord> tests_of(const Dataset& dataset, Role role);
+
 /// Writes dataset.json last; the CSV files must already be in `folder` (their digests are taken from there).
 /// Sets digest, the tests' sha256 and, when empty, seeds.
 void write_dataset_index(const std::filesystem::path& folder, Dataset& dataset);

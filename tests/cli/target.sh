@@ -22,13 +22,16 @@ grep -q 'sheared at 0.68, 0.707, 0.733, 0.76: ' text || fail "densities: $(cat t
 # the frame stays, what the plan chose is listed; the seeds follow the frame's
 jq -e '.overrides | keys == ["densities", "particles", "seeds", "tests"]' loose/plan.json >/dev/null || fail "$(jq -c .overrides loose/plan.json)"
 jq -e '.seeds == [5, 1, 6, 7] and .densities[0] == 0.68 and .strain_rate == 3000' loose/spec.resolved.json >/dev/null || fail spec
+# the path was rehearsed on every packing, unfitted, and says how far off the law is
+validation_tests() { jq -r '.tests[] | select(.role == "validation") | .name' "$1/dataset.json" | sed 's/-.*//' | sort | uniq -c | xargs; }
+jq -e '.rounds[0].quantities[0] | .discrepancy >= .discrepancy_min and .discrepancy_min >= 0' loose/plan.json >/dev/null || fail "$(cat loose/plan.json)"
+[[ $(validation_tests loose/pilot/faster) == '4 rehearsal' ]] || fail "the pilot saw $(validation_tests loose/pilot/faster)"
 # held-out tests came last, on the packings of the plan
-jq -e '[.tests[] | select(.role == "validation")] | length == 4' loose/dataset/dataset.json >/dev/null || fail 'no validation tests'
-jq -e '[.tests[] | select(.role == "validation")] | length == 0' loose/pilot/smaller/dataset.json >/dev/null || fail 'the pilot saw validation tests'
+[[ $(validation_tests loose/dataset) == '4 UNI 4 rehearsal' ]] || fail "validation tests: $(validation_tests loose/dataset)"
 grep -A1 'rung:' log | grep -q 'tests of other roles' || fail "$(cat log)"
 
 # a smaller one: the cheapest of the candidates that reach it; what is finished is found again
-error=$(jq '.rounds[0].error * 0.7' loose/plan.json)
+error=$(jq '.rounds[0].error * 0.85' loose/plan.json)
 code=0
 target -o loose --target-error "$error" --max-cost 5000 >text 2>log || code=$?
 jq -e --argjson e "$error" '.rounds[1].settings as $s | (.rounds | length) >= 2 and (.candidates | length) > 20

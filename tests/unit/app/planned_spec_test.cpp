@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "app/dataset_runs.hpp"
+
 namespace grainlaw::app {
 namespace {
 
@@ -37,15 +39,27 @@ TEST(PlannedSpec, KeepsTheFrame) {
   EXPECT_EQ(spec.preparation.drive.strain_rate, 276);
   EXPECT_EQ(spec.preparation.engine.time_step_fraction, 0.05);
   EXPECT_EQ(spec.seeds, (std::vector<std::uint64_t>{7, 3, 8, 9}));
-  ASSERT_EQ(spec.tests.size(), 4u);
+  ASSERT_EQ(spec.tests.size(), 5u);
   EXPECT_EQ(spec.tests[1].densities, (std::vector<double>{0.70, 0.73, 0.76, 0.79}));
   EXPECT_EQ(spec.tests[1].strain, 0.21);
   EXPECT_EQ(spec.tests[2].densities, (std::vector<double>{0.70, 0.73, 0.76}));
   EXPECT_EQ(spec.tests[3].densities, (std::vector<double>{0.7}));
   // what is not for the plan is left for later, on the same packings
-  const Spec first = calibration_only(spec);
-  EXPECT_EQ(first.tests.size(), 3u);
+  const Spec first = rounds_of(spec);
+  EXPECT_EQ(first.tests.size(), 4u);
   EXPECT_EQ(first.preparation.keep_unloading, spec.preparation.keep_unloading);
+}
+
+TEST(PlannedSpec, RehearsesThePath) {
+  const Spec spec = planned_spec(frame(), {500, 2, 276, 0.05, 4, 0.21}, path(0.695, 0.79));
+  const auto tests = plan(rounds_of(spec));
+  const PlannedTest& last = tests.back();
+  EXPECT_EQ(last.name, "rehearsal-0.695-s3");
+  EXPECT_EQ(last.role, Role::validation);  // never fitted
+  EXPECT_EQ(last.path.nu, 0.695);
+  EXPECT_EQ(last.path.segments.size(), 1u);
+  EXPECT_NEAR(resolve(last.path).back().nu(resolve(last.path).back().length), 0.79, 1e-12);
+  EXPECT_EQ(last.preparation.keep_unloading, tests.front().preparation.keep_unloading);  // from the same packings
 }
 
 TEST(PlannedSpec, TheGridHoldsThePilotAndTheWantedRate) {
