@@ -106,6 +106,38 @@ wanted_errors() {
   done
 }
 
+# Processor seconds that Debian's LAMMPS would take at the paper's settings (9261 spheres, 138 1/s, step t_c,min/50) for one
+# packing and the tests of a plan's last round, over those of the whole plan. Its rate is measured on one core at both ends of the
+# densities (bench_engine, the mean of the times); the steps are those of the shipped runs, carried to the smaller step. Left out, in its
+# favour: relaxations, rebuilding lists, the fit, and that one packing has no interval at all; three have the widest one.
+price_beside_lammps() {
+  local rates=$out/lammps.txt particle_steps wanted price
+  mkdir -p "$out/../engine"
+  taskset -c 0 $bin/bench_engine "$out/../engine" >"$rates" 2>"$rates.err" || tail -3 "$rates.err" >&2
+  for wanted in 0.05 0.02 0.01; do
+    particle_steps=$(steps_at_paper_settings "$out/target-$wanted/plan.json")
+    price=$(awk -v steps="$particle_steps" -v a="$(value_of rate.lammps.N9261.threads1.nu0.66 "$rates")" \
+      -v b="$(value_of rate.lammps.N9261.threads1.nu0.82 "$rates")" \
+      -v ours="$(jq '[.rounds[].seconds] | add' "$out/target-$wanted/plan.json")" -v cores="$(nproc)" \
+      'BEGIN { print (a > 0 && b > 0 && ours > 0) ? steps / 2e6 * (1 / a + 1 / b) / (ours * cores) : "missing" }')
+    figure "wanted.$wanted.lammps_seconds_over_ours.one_packing" "$price" ">=50"
+    figure "wanted.$wanted.lammps_seconds_over_ours.three_packings" "$(awk -v p="$price" 'BEGIN { print p > 0 ? 3 * p : "missing" }')" stated
+  done
+}
+
+# Of the first packing's preparation and the plan's shear tests, from the shipped runs.
+steps_at_paper_settings() { # plan.json
+  local dataset=$data/dataset/dataset.json driven
+  driven=$(awk -F, 'FNR > 2 { driven += $1 - last } { last = $1 } END { print driven }' "$data"/dataset/ISO-{loading,unloading}-s1.csv)
+  jq --argjson driven "$driven" --slurpfile plan "$1" '
+    ($plan[0].rounds[-1].settings.densities) as $densities
+    | (.spec.time_step_fraction * 50) as $smaller
+    | [.tests[] | select(.role == "calibration" and .packing.seed == 1 and .cost.steps > 0)] as $sheared
+    | def mean_steps(mode): [$sheared[] | select(.name | startswith(mode)) | .cost.steps] | add / length;
+    $smaller * .tests[0].packing.particles
+      * ($driven / $sheared[0].cost.time_step + $densities * mean_steps("D2-0") + 3 * mean_steps("D2-ISO"))' "$dataset"
+}
+
 if [[ -d $data ]]; then
   refit
   verdicts
@@ -118,4 +150,5 @@ fi
 if [[ $quick == yes ]]; then finish_figures; exit; fi
 figures_of_tests $bin/long 'Studies/Coverage*' F2. F3.
 wanted_errors
+price_beside_lammps
 finish_figures
