@@ -11,4 +11,4 @@ out=$(realpath -m "${1:-grainlaw-paper}")
 inputs=$(realpath "$here")
 run_chain "$here" "$out" --dem
 # the same cycle at the tenth of the rate, for the energy ratio (Fig. 3)
-grainlaw simulate "$inputs/slow/cycle.json" -o "$out/slow-cycle" >/dev/null
+build/release/bin/grainlaw simulate "$inputs/slow/cycle.json" -o "$out/slow-cycle" >/dev/null
