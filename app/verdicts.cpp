@@ -22,7 +22,8 @@ bool of_shear(std::string_view group) {
 void judge(Verdict& v, bool known, std::size_t packings) {
   const double n = static_cast<double>(packings);
   if (!known) v.ours = std::nan("");
-  v.distance = (v.ours - v.published) / (v.standard_error * std::sqrt(n + 1));
+  // on its bound a parameter has no error, and nothing is so and so many of none away
+  v.distance = v.standard_error > 0 ? (v.ours - v.published) / (v.standard_error * std::sqrt(n + 1)) : std::nan("");
   if (!known)
     v.verdict = "not identified";
   else if (!std::isfinite(v.distance) || packings < 2)

@@ -57,6 +57,16 @@ TEST(Verdicts, SayWhatCannotBeJudged) {
   for (const Verdict& v : verdicts_of(c, {}, 1)) EXPECT_NE(v.verdict, "agrees") << v.quantity;
 }
 
+TEST(Verdicts, AParameterOnItsBoundHasNoDistance) {
+  fit::Calibration c = published("", {"coordination"});
+  fit::Estimate& bound = c.estimates[parameter_index("coordination.alpha")];
+  bound.standard_error = 0;
+  bound.value *= 1.5;
+  const Verdict v = find(verdicts_of(c, {}, 5), "ISO", "coordination.alpha");
+  EXPECT_TRUE(std::isnan(v.distance)) << "a number that no file could hold: " << v.distance;
+  EXPECT_EQ(v.verdict, "no error");
+}
+
 TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
   const std::vector<fit::Description> modes{
       {"UNI", published("UNI", {"coordination", "rattlers", "pressure"})},
