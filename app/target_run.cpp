@@ -82,7 +82,7 @@ std::string text_of(const TargetRound& round) {
   std::string text = fmt::format("{} rung:", to_string(round.known.rung));
   for (const ExpectedError& e : round.errors) {
     const QuantityPrecision* p = find(round.known, e.quantity);
-    text += fmt::format(" {} {:.2f} % (band {:.2f}, rate {:.2f}, step {:.2f}, size {:.2f}; the fit leaves {:.2f})",
+    text += fmt::format(" {} {:.2f} % (band {:.2f}, rate {:.2f}, step {:.2f}, size {:.2f}; law off by {:.2f})",
                         e.quantity, 100 * e.total(), 100 * e.half_width, 100 * e.biases[0], 100 * e.biases[1],
                         100 * e.biases[2], p == nullptr ? std::nan("") : 100 * p->discrepancy);
   }
