@@ -21,7 +21,10 @@ namespace fs = std::filesystem;
 /// A preparation as its tests depend on it: without rows and without the list of states that were kept on the way.
 Json packing_identity(const dem::PreparationOptions& o) {
   Json identity = preparation_to_json(o);
-  identity.erase("rows");
+  if (o.drive.quasi_static_step == 0) {  // else rows are part of how the steps are cut
+    identity.erase("rows");
+    identity.erase("quasi_static_step");
+  }
   identity["seed"] = o.packing.seed;
   identity["nu_gas"] = o.nu_gas;
   identity["gas_compression_factor"] = o.gas_compression_factor;
@@ -73,6 +76,7 @@ Json test_request(const TestStart& start, const Path& path) {
                           "transport", "density", "stiffness", "contact_viscosity", "background_viscosity"}) {
     request["given"][key] = all[key];
   }
+  if (start.preparation.drive.quasi_static_step > 0) request["given"]["quasi_static_step"] = all["quasi_static_step"];
   return request;
 }
 
@@ -116,6 +120,7 @@ Json ensure_test(const RunStore& store, const TestStart& start, const Path& path
   dem::ElementTestOptions options;
   options.engine = start.preparation.engine;
   options.drive = start.preparation.drive;
+  options.relax = start.preparation.relax;
   options.rows = start.rows;
   const fs::path folder = policy.resume ? store.reopen(key) : store.begin(key);
   const CheckpointFiles checkpoints(folder, key, policy);

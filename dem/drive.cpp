@@ -34,6 +34,10 @@ void check_can_follow(const std::vector<StraightSegment>& segments) {
   }
 }
 
+double strain_of(const StraightSegment& segment) {
+  return segment.length * std::max(std::abs(segment.eps_vol_rate()), segment.eps_dev_rate());
+}
+
 Drive make_drive(const StraightSegment& segment, const DriveOptions& options, const Eigen::Matrix3d& H_0) {
   if (!is_upright(segment)) {
     throw InvalidInput("the engine deforms the cell along its axes only; give a diagonal rate_tensor");
@@ -42,9 +46,8 @@ Drive make_drive(const StraightSegment& segment, const DriveOptions& options, co
     throw InvalidInput("strain_rate: must be positive and finite");
   }
   Drive drive{segment, options, H_0, 0};
-  const double strain = segment.length * std::max(std::abs(segment.eps_vol_rate()), segment.eps_dev_rate());
   const double peak_over_mean = options.profile == Profile::cosine ? std::numbers::pi / 2 : 1;
-  drive.duration = peak_over_mean * strain / options.strain_rate;
+  drive.duration = peak_over_mean * strain_of(segment) / options.strain_rate;
   return drive;
 }
 

@@ -5,7 +5,7 @@
 //             the other edges follow from D, so that constant-volume modes keep the volume to rounding
 //   constant: e(t) = length t/tau
 // tau = (pi/2) g/strain_rate for the cosine, g/strain_rate for the constant rate, with
-// g = max(|eps_vol|, eps_dev) of the whole segment: strain_rate is the peak rate. Homogeneous transport: L = de/dt D.
+// g = strain_of(segment): strain_rate is the peak rate. Homogeneous transport: L = de/dt D.
 // Wall-driven: edges move, spheres do not, L = 0 inside and their velocity is unchanged when they re-enter.
 
 #include "dem/simulation.hpp"
@@ -19,6 +19,7 @@ struct DriveOptions {
   double strain_rate = 138;                      ///< peak of max(|eps_vol rate|, eps_dev rate) along a segment [1/s]
   Profile profile = Profile::cosine;
   Transport transport = Transport::homogeneous;
+  double quasi_static_step = 0;  ///< > 0: no dynamics, but minimised steps of at most this strain (dem/quasi_static_test.hpp) [-]
 };
 
 struct Drive {
@@ -30,6 +31,9 @@ struct Drive {
 
 /// Throws InvalidInput naming the first segment that the engine cannot follow: it deforms the cell along its axes only.
 void check_can_follow(const std::vector<StraightSegment>& segments);
+
+/// max(|eps_vol|, eps_dev) of the whole segment [-].
+double strain_of(const StraightSegment& segment);
 
 /// Throws InvalidInput unless D is diagonal and without spin and the strain rate positive and finite.
 Drive make_drive(const StraightSegment& segment, const DriveOptions& options, const Eigen::Matrix3d& H_0);

@@ -9,6 +9,7 @@
 
 #include "dem/averages.hpp"
 #include "dem/path_row.hpp"
+#include "dem/quasi_static_test.hpp"
 #include "dem/run_watch.hpp"
 
 namespace grainlaw::dem {
@@ -266,6 +267,8 @@ ElementTest run_element_test(const State& start, const std::vector<StraightSegme
                              const ElementTestOptions& options, const RunControl& control, const StepObserver& on_step,
                              const Checkpointing& checkpointing) {
   check_options(start, options);
+  if (options.drive.quasi_static_step > 0)
+    return run_quasi_static_test(start, segments, options, control, on_step, checkpointing);
   TestRun run(segments, options, control, on_step, checkpointing);
   run.start(start);
   return run.run();
@@ -275,6 +278,8 @@ ElementTest continue_element_test(Checkpoint from, const std::vector<StraightSeg
                                   const ElementTestOptions& options, const RunControl& control,
                                   const StepObserver& on_step, const Checkpointing& checkpointing) {
   check_options(from.state, options);
+  if (options.drive.quasi_static_step > 0)
+    return continue_quasi_static_test(std::move(from), segments, options, control, on_step, checkpointing);
   TestRun run(segments, options, control, on_step, checkpointing);
   run.resume(std::move(from));
   return run.run();

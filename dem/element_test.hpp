@@ -7,6 +7,7 @@
 
 #include "dem/checkpoint.hpp"
 #include "dem/drive.hpp"
+#include "dem/relax.hpp"
 #include "model/observation.hpp"
 #include "model/run_control.hpp"
 
@@ -15,6 +16,7 @@ namespace grainlaw::dem {
 struct ElementTestOptions {
   EngineOptions engine;
   DriveOptions drive;
+  RelaxOptions relax;                ///< of the minimisations where drive.quasi_static_step > 0
   int rows = 200;                    ///< rows of each segment (besides the first row of the test)
   double warn_energy_residual = 1e-3;  ///< imbalance over (largest |W| so far + E_kin(0) + D) that is warned of [-]
   double stop_energy_residual = 1e-2;  ///< beyond it the test stops with Error 'energy balance' [-]

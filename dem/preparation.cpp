@@ -78,6 +78,7 @@ ElementTestOptions branch_options(const PreparationOptions& options) {
   ElementTestOptions branch;
   branch.engine = options.engine;
   branch.drive = options.drive;
+  branch.relax = options.relax;
   branch.rows = options.rows;
   return branch;
 }
@@ -85,6 +86,7 @@ ElementTestOptions branch_options(const PreparationOptions& options) {
 ElementTestOptions gas_options(const PreparationOptions& options) {
   ElementTestOptions gas = branch_options(options);
   gas.drive.strain_rate *= options.gas_compression_factor;
+  gas.drive.quasi_static_step = 0;  // a gas has no equilibrium
   gas.warn_inertial_number = std::numeric_limits<double>::infinity();  // a gas is not meant to be quasi-static
   return gas;
 }

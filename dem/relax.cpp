@@ -33,6 +33,7 @@ constexpr double kRounding = 1e-13;
 struct Totals {
   double gw = 0, gg = 0, ww = 0;  // sums of g.w, g.g, w.w
   double overlap = 0;             // sum over contact meetings (twice per contact) [m]
+  double overlap2 = 0;            // likewise of its square [m^2]
   std::size_t meetings = 0;
   double f2_max = 0;              // largest f.f [m^2]
 };
@@ -152,6 +153,7 @@ struct Minimiser {
       sum.gg += part.gg;
       sum.ww += part.ww;
       sum.overlap += part.overlap;
+      sum.overlap2 += part.overlap2;
       sum.meetings += part.meetings;
       sum.f2_max = std::max(sum.f2_max, part.f2_max);
     }
@@ -167,6 +169,7 @@ struct Minimiser {
         fy += delta * ny;
         fz += delta * nz;
         sum.overlap += delta;
+        sum.overlap2 += delta * delta;
         ++sum.meetings;
       });
       const Row& wi = w[i];
@@ -254,6 +257,8 @@ Relaxation relax(State& state, const EngineOptions& engine, const RelaxOptions& 
   for (;;) {
     const Totals totals = minimiser.forces();
     ++result.passes;
+    result.E_after = 0.25 * k * totals.overlap2;  // k delta^2/2 of each contact
+    if (result.passes == 1) result.E_before = result.E_after;
     result.max_net_force = k * std::sqrt(totals.f2_max);
     result.mean_contact_force = totals.meetings ? k * totals.overlap / static_cast<double>(totals.meetings) : 0;
     if (!std::isfinite(result.max_net_force)) throw Error("relaxation: forces are no longer finite");

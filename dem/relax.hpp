@@ -19,6 +19,7 @@ struct Relaxation {
   double max_net_force = 0;        ///< [N]
   double mean_contact_force = 0;   ///< [N], 0 without contacts
   std::int64_t passes = 0;         ///< force passes used
+  double E_before = 0, E_after = 0;  ///< elastic energy at the first and the last of them [J]
 };
 
 /// Moves the spheres of `state` to equilibrium at fixed cell; velocities become zero, accelerations and list reference

@@ -141,7 +141,7 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   fit_options.coupling = options.coupling.value_or(spec ? spec->coupling : Coupling::energy);
   if (spec) spec->coupling = fit_options.coupling;
 
-  const std::optional<PrecisionTarget> target = options.target_error ? std::optional(target_of(options)) : std::nullopt;
+  const std::optional<PrecisionTarget> target = options.target_error ? std::optional(target_of(options, spec)) : std::nullopt;
   make_output_folder(options.output);
   const fs::path dataset_output = make_subfolder(options.output, "dataset");
   RunCounts counts;

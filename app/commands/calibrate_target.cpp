@@ -90,11 +90,15 @@ std::string table_of(const TargetRun& run, const PrecisionTarget& target, const 
 
 }  // namespace
 
-PrecisionTarget target_of(const CalibrateOptions& options) {
+PrecisionTarget target_of(const CalibrateOptions& options, const std::optional<Spec>& frame) {
   if (!options.dataset.empty())
     throw InvalidInput("calibrate: --target-error makes new runs, which --dataset cannot; leave one of them out");
   if (options.target_path.empty())
     throw InvalidInput("calibrate: --target-error is that of a prediction; give its PATH with --for");
+  if (frame && frame->preparation.drive.quasi_static_step > 0)
+    throw InvalidInput(fmt::format("{}: quasi_static_step: a plan chooses strain rate and time step, which minimised steps "
+                                   "do not have; leave it 0",
+                                   options.spec.string()));
   const Path path = read_path(options.target_path).path;
   if (law_decides(path))
     throw InvalidInput(fmt::format("{}: segments: leave the strain to the law; a target needs a path of given strain",

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "app/commands/calibrate.hpp"
 #include "app/files/dataset.hpp"
@@ -12,8 +13,9 @@
 
 namespace grainlaw::app {
 
-/// What the options ask for. Throws InvalidInput for options, a path or quantities that no plan can be made for.
-PrecisionTarget target_of(const CalibrateOptions& options);
+/// What the options ask for in the frame. Throws InvalidInput for options, a frame, a path or quantities that no plan can be
+/// made for.
+PrecisionTarget target_of(const CalibrateOptions& options, const std::optional<Spec>& frame);
 
 /// Simulates the tests of a spec into a folder.
 using Simulate = std::function<Dataset(const Spec& spec, const std::filesystem::path& folder)>;

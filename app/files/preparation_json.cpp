@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/quasi_static_test.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
 namespace {
 
+constexpr double kPassesPerMinimum = 300;  // force passes of one minimisation along a quasi-static path, measured within a factor of 3
 constexpr double kUnloadTo = 0.66;  // just below jamming, so that the unloading branch brackets nu_c
 
 /// The lightest sphere of the distribution, uniform on 2<r>/(w+1) [1, w].
@@ -51,6 +53,7 @@ void read_preparation(const Json& document, dem::PreparationOptions& o) {
   take("skin", o.engine.skin);
   take("portable_bits", o.engine.portable_bits);
   take("strain_rate", o.drive.strain_rate);
+  take("quasi_static_step", o.drive.quasi_static_step);
   take("nu_start", o.nu_start);
   take("nu_max", o.nu_max);
   take("rows", o.rows);
@@ -83,6 +86,7 @@ OrderedJson preparation_to_json(const dem::PreparationOptions& o) {
           {"precision", name_of(o.engine.precision)},
           {"portable_bits", o.engine.portable_bits},
           {"strain_rate", o.drive.strain_rate},
+          {"quasi_static_step", o.drive.quasi_static_step},
           {"driving", o.drive.profile == dem::Profile::constant ? "constant" : "cosine"},
           {"transport", o.drive.transport == dem::Transport::wall ? "wall" : "homogeneous"},
           {"rows", o.rows},
@@ -94,6 +98,11 @@ OrderedJson preparation_to_json(const dem::PreparationOptions& o) {
 double expected_steps(const dem::PreparationOptions& o, const std::vector<StraightSegment>& segments) {
   const double dt = o.engine.time_step_fraction * shortest_collision(o.packing);
   double steps = 0;
+  if (o.drive.quasi_static_step > 0) {
+    for (const StraightSegment& segment : segments)
+      steps += kPassesPerMinimum * static_cast<double>(dem::quasi_static_steps(segment, o.drive, o.rows));
+    return steps;
+  }
   for (const StraightSegment& segment : segments) {
     steps += std::ceil(dem::make_drive(segment, o.drive, Eigen::Matrix3d::Identity()).duration / dt);
   }
@@ -101,7 +110,9 @@ double expected_steps(const dem::PreparationOptions& o, const std::vector<Straig
 }
 
 double expected_steps(const dem::PreparationOptions& o) {
-  return expected_steps(o, isotropic(o.nu_gas, o.nu_start)) / o.gas_compression_factor +
+  dem::PreparationOptions gas = o;
+  gas.drive.quasi_static_step = 0;
+  return expected_steps(gas, isotropic(o.nu_gas, o.nu_start)) / o.gas_compression_factor +
          expected_steps(o, isotropic(o.nu_start, o.nu_max)) +
          expected_steps(o, isotropic(o.nu_max, o.nu_end.value_or(o.nu_start)));
 }

@@ -64,3 +64,9 @@ for bad in '--target-error 0.1' '--for path.json' '--target-error 0 --for path.j
   "$grainlaw" calibrate spec.json -o bad $bad >/dev/null 2>err || code=$?
   [[ $code == 2 && ! -e bad ]] || fail "$bad: exit $code, $(cat err)"
 done
+
+# minimised steps have neither rate nor time step to plan with
+jq '.quasi_static_step = 0.001' spec.json >minimised.json
+code=0
+"$grainlaw" calibrate minimised.json -o bad --target-error 0.1 --for path.json >/dev/null 2>err || code=$?
+[[ $code == 2 && ! -e bad ]] && grep -q 'minimised.json: quasi_static_step' err || fail "minimised: exit $code, $(cat err)"

@@ -56,6 +56,7 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
   EXPECT_TRUE(changed([](O& o) { o.engine.time_step_fraction = 0.09; }));
   EXPECT_TRUE(changed([](O& o) { o.engine.skin = 0.09; }));
   EXPECT_TRUE(changed([](O& o) { o.drive.strain_rate = 1; }));
+  EXPECT_TRUE(changed([](O& o) { o.drive.quasi_static_step = 1e-3; }));
   EXPECT_TRUE(changed([](O& o) { o.drive.profile = dem::Profile::constant; }));
   EXPECT_TRUE(changed([](O& o) { o.drive.transport = dem::Transport::wall; }));
   EXPECT_TRUE(changed([](O& o) { o.relax.tolerance = 1e-6; }));
@@ -76,6 +77,13 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
   more.keep_unloading = {0.72, 0.74};  // another state kept on the way changes no test
   EXPECT_EQ(test_key(more, d2()), test_key(tiny(), d2()));
   EXPECT_NE(run_key(test_request({tiny(), 21, {}, "", false}, d2())), test_key(tiny(), d2()));
+  more = tiny();
+  more.rows = 77;  // of the branches
+  EXPECT_EQ(run_key(test_request({more, 20, {}, "", false}, d2())), run_key(test_request({tiny(), 20, {}, "", false}, d2())));
+  dem::PreparationOptions minimised = tiny();
+  minimised.drive.quasi_static_step = more.drive.quasi_static_step = 1e-3;  // rows of the branches cut its steps
+  EXPECT_NE(run_key(test_request({more, 20, {}, "", false}, d2())),
+            run_key(test_request({minimised, 20, {}, "", false}, d2())));
   more = tiny();
   more.packing.seed = 5;
   EXPECT_NE(test_key(more, d2()), test_key(tiny(), d2()));
