@@ -13,7 +13,7 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr int kMostParameters = 6;
+constexpr int kMostParameters = 7;
 using Jet = ceres::Jet<double, kMostParameters>;
 constexpr double kVague = 0.5;  // relative error beyond which a parameter is no number
 constexpr double kRounding = 1e-9;
@@ -22,33 +22,41 @@ const std::vector<std::string> kGivenLaws{"coordination",        "rattlers",    
                                           "stress_ratio_max",    "fabric_max"};
 
 std::vector<std::string> free_names(bool volumetric) {
-  std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda"};
+  std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.chi"};
   if (volumetric) names.insert(names.end(), {"memory.c_F", "memory.a2"});
   return names;
 }
 
 bool constant_volume(const Trajectory& t) { return std::abs(t.direction.dx) <= 1e-12; }
 
-/// Adds the rows up to `window` of deviatoric strain, or all, as one channel whose rows together weigh 1/scale.
-void add_channel(const Trajectory& t, const std::string& quantity, double window, ResidualBlock& block,
+/// Rows of a channel that count.
+struct Counted {
+  double window;        ///< deviatoric strain up to which they do; together they weigh 1/scale
+  bool beyond = false;  ///< the others, too; together they weigh as much
+};
+
+/// Adds a quantity as one channel.
+void add_channel(const Trajectory& t, const std::string& quantity, Counted counted, ResidualBlock& block,
                  double (*datum)(const Trajectory&, const LawState<double>&),
                  double (*scale)(const LawState<double>&, const CalibrationOptions&),
                  const CalibrationOptions& options) {
   const int rows = static_cast<int>(t.rows.size()), first = rows * static_cast<int>(block.channels.size());
-  const auto in = [&](const TrajectoryRow& row) { return t.direction.de * row.e <= window + kRounding; };
-  const auto count = std::count_if(t.rows.begin(), t.rows.end(), in);
+  const auto in = [&](const TrajectoryRow& row) { return t.direction.de * row.e <= counted.window + kRounding; };
+  const auto inside = std::count_if(t.rows.begin(), t.rows.end(), in), outside = rows - inside;
   Channel channel{quantity, first, rows, t.excluded, 0};
   for (int i = 0; i < rows; ++i) {
     const TrajectoryRow& row = t.rows[static_cast<std::size_t>(i)];
     channel.max_abs_data = std::max(channel.max_abs_data, std::abs(datum(t, row.data)));
-    if (in(row)) block.weight(first + i) = 1 / (std::sqrt(static_cast<double>(count)) * scale(row.data, options));
+    if (in(row) || counted.beyond)
+      block.weight(first + i) =
+          1 / (std::sqrt(static_cast<double>(in(row) ? inside : outside)) * scale(row.data, options));
   }
   block.channels.push_back(channel);
 }
 
 ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, const std::vector<std::size_t>& index,
                        const CalibrationOptions& options) {
-  constexpr double all = 1e300, none = -1;
+  constexpr Counted all{1e300}, none{-1};
   const bool shear = constant_volume(t);
   ResidualBlock block;
   block.test = t.test;
@@ -58,11 +66,11 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
       t, "P_star", shear ? all : none, block, [](const Trajectory&, const LawState<double>& y) { return y.P; },
       [](const LawState<double>& y, const CalibrationOptions& o) { return o.pressure_scale * y.P; }, options);
   add_channel(
-      t, "s_par", shear ? options.stiffness_window : all, block,
+      t, "s_par", shear ? Counted{options.stiffness_window, true} : all, block,
       [](const Trajectory& of, const LawState<double>& y) { return y.sigma.dot(of.axes.front()) / y.P; },
       [](const LawState<double>&, const CalibrationOptions& o) { return o.stress_scale; }, options);
   add_channel(
-      t, "F_par", shear ? options.lag_window : all, block,
+      t, "F_par", shear ? Counted{options.lag_window} : all, block,
       [](const Trajectory& of, const LawState<double>& y) { return y.F.dot(of.axes.front()); },
       [](const LawState<double>&, const CalibrationOptions& o) { return o.fabric_scale; }, options);
   block.evaluate =
@@ -74,7 +82,9 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
 std::string window_text(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative, "
-      "scale {:g}, s_par of eps_dev <= {:g}, scale {:g}, F_par of eps_dev <= {:g}, scale {:g}; where the volume "
+      "scale {:g}, s_par of eps_dev <= {:g} and with the same weight of the rest, scale {:g}, F_par of eps_dev <= "
+      "{:g}, scale {:g}; "
+      "where the volume "
       "changes s_par and F_par of all rows",
       options.pressure_scale, options.stiffness_window, options.stress_scale, options.lag_window, options.fabric_scale);
 }
@@ -119,7 +129,7 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
       const double value = fit.solution.x(static_cast<Eigen::Index>(k));
       *field[parameter_index(name)] = value;
       const double error = fit.stage.estimates[k].estimate.standard_error;
-      if (error > kVague * std::abs(value))
+      if (name != "memory.chi" && error > kVague * std::abs(value))  // chi may be none
         fit.mark_not_identified(
             name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
                       (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));

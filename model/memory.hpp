@@ -1,12 +1,15 @@
 #pragma once
 // Eq. (16) with a memory: what dilatancy at constant volume, reversals and the fabric of uniaxial paths need
 // (docs/decisions/0005-memory-law.md). Compression positive, dimensionless; notation of evolution.hpp, s = sigma'/P.
-//   Delta   distance from s_r, the stress ratio at the last reversal, along N to |s| = s_max;  xi = |s - s_r|/Delta
-//   flow    = N - xi^(m-1) (s - s_r)/Delta,         S = <flow,N>, on co-axial paths 1 - xi^m
+//   Delta   distance from s_r, the stress ratio at the last reversal, along N to |s| = s_lim;  xi = |s - s_r|/Delta
+//   flow    = N - q xi^(m-1) (s - s_r)/Delta,       S = <flow,N>, on co-axial paths 1 - q xi^m
 //   dP      = B dx + A1 S de + k (P_t - P) xi de,   P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
 //   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha
 //   dF'     = lambda ((F_max/s_max) s - F') de - c_F F' <dx>,  <dx> the compressive part of dx
 //   A1      = (2/3)(a2 B <F',N> - <sigma',N>)
+//   s_lim   = s_max + chi <k (P_t - P)/B>           stress-dilatancy: while the packing would dilate, it bears more; <> smooth
+//   q       = 1 - min(1, B <dx> <s - a2 F',N>/(DG de)), the share of shear that loads: by elasticity alone compression takes
+//             the stress ratio down, and only what shear adds beyond that is plastic; 1 where the volume is constant or grows
 // P relaxes to its sheared level at constant volume: nu_J = nu_c nu/nu_P is the evolving jamming density, with nu_P the
 // density at which the reference, ISO unloading, carries P. To first order, nu_P = nu exp((P - P_iso)/B_iso); below nu_c
 // the reference goes on along its tangent. B and DG are those at nu_P.
@@ -23,6 +26,16 @@ namespace grainlaw {
 
 /// Delta, in s_max, below which the stress goes to its limit no faster: no small cycle near the limit is stiff.
 inline constexpr double kLeastDistance = 0.1;
+
+/// Dilatancy over which the positive part of it bends: predictions have slopes to their parameters everywhere.
+inline constexpr double kDilatancyBend = 5e-3;
+
+/// x where x is large, 0 at 0, -kDilatancyBend/2 where x is large and negative.
+template <class T>
+T positive_part(const T& x) {
+  using std::sqrt;
+  return (x + sqrt(x * x + kDilatancyBend * kDilatancyBend) - kDilatancyBend) / 2.0;
+}
 
 /// <s - s_r, N>: a reversal is where it is, or falls, below zero. Zero without shear.
 template <class T>
@@ -78,18 +91,24 @@ T pressure_density(const LawModuli<T>& m, const T& P) {
 template <class T>
 struct MemoryLoading {
   T xi{};            ///< part of the way to the limit that is gone: 0 at a reversal, 1 on the limit [-]
-  Deviator<T> flow;  ///< how the stress ratio answers to shear, N at a reversal, 0 on the limit [-]
+  Deviator<T> flow;  ///< how the stress ratio answers to shear that loads, N at a reversal, 0 on the limit [-]
 };
 
 template <class T>
-MemoryLoading<T> memory_loading(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_max,
+MemoryLoading<T> memory_loading(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_lim,
                                 const T& m) {
   using std::pow;
   using std::sqrt;
   if ((s - s_r).dot(N) < 0.0) s_r = s;
-  if (const T r2 = s_r.squaredNorm(); r2 > s_max * s_max) s_r *= s_max / sqrt(r2);
-  const T along = s_r.dot(N), square = along * along + s_max * s_max - s_r.squaredNorm();
-  const T Delta = square > 0.0 ? T(sqrt(square) - along) : T(-along), least = kLeastDistance * s_max;
+  const T along = s_r.dot(N);
+  const Deviator<T> across = s_r - along * N;
+  T across2 = across.squaredNorm();
+  if (across2 > s_lim * s_lim) {  // shear along N would miss the limit
+    s_r -= across * (1.0 - s_lim / sqrt(across2));
+    across2 = s_lim * s_lim;
+  }
+  const T square = s_lim * s_lim - across2, least = kLeastDistance * s_lim;
+  const T Delta = square > 0.0 ? T(sqrt(square) - along) : T(-along);
   const Deviator<T> gone = s - s_r;
   if (Delta < least) return {T(1.0), (N * Delta - gone) / least};
   const T gone2 = gone.squaredNorm(), xi = gone2 > 0.0 ? T(sqrt(gone2) / Delta) : T(0.0);
@@ -110,12 +129,17 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   rate.F = y.F * (-p.memory.c_F * std::max(direction.dx, 0.0));
   if (direction.de == 0) return rate;
   const Deviator<T> s = y.sigma / y.P;
-  const MemoryLoading<T> loading = memory_loading(s, y.s_r, N, m.s_max, p.memory.m);
-  const T A1 = (2.0 / 3.0) * (p.memory.a2 * B * y.F.dot(N) - y.sigma.dot(N));
   const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
+  const T relaxation = p.memory.k * (P_t - y.P), dilatancy = relaxation / B;
+  const T s_lim = m.s_max + p.memory.chi * positive_part(dilatancy);
+  const MemoryLoading<T> loading = memory_loading(s, y.s_r, N, s_lim, p.memory.m);
+  const T A1 = (2.0 / 3.0) * (p.memory.a2 * B * y.F.dot(N) - y.sigma.dot(N));
   const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);
-  rate.P += (A1 * loading.flow.dot(N) + p.memory.k * (P_t - y.P) * loading.xi) * direction.de;
-  rate.sigma += loading.flow * (DG * direction.de);
+  const T taken = B * std::max(direction.dx, 0.0) * (s - y.F * p.memory.a2).dot(N), added = DG * direction.de;
+  const T q = !(taken > 0.0) ? T(1.0) : taken < added ? T(1.0 - taken / added) : T(0.0);
+  const Deviator<T> flow = N + (loading.flow - N) * q;
+  rate.P += (A1 * flow.dot(N) + relaxation * loading.xi) * direction.de;
+  rate.sigma += flow * added;
   rate.F += (s * (m.F_max / m.s_max) - y.F) * (p.memory.lambda * direction.de);
   return rate;
 }

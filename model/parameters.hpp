@@ -34,6 +34,7 @@ struct Memory {
   T lambda{};      ///< rate at which fabric follows stress [-]
   T c_F{};         ///< dilution of fabric by compression [-]
   T a2{};          ///< A2/(B F_dev), with fabric that is diluted [-]
+  T chi{};         ///< rise of the limit of the stress ratio with dilatancy [-]
 };
 
 template <class T>
@@ -51,7 +52,7 @@ struct LawParameters {
   Memory<T> memory;
 };
 
-inline constexpr std::size_t kParameterCount = 41;
+inline constexpr std::size_t kParameterCount = 42;
 
 /// The fields in the order of parameter_table(). `Law` is LawParameters<T> or const LawParameters<T>.
 template <class Law>
@@ -69,7 +70,8 @@ auto fields(Law& p) {
       &p.fabric_max.Q_limit, &p.fabric_max.Q_c, &p.fabric_max.alpha,
       &p.fabric_rate.Q_limit, &p.fabric_rate.Q_c, &p.fabric_rate.alpha,
       &p.anisotropy.a0, &p.anisotropy.a1, &p.anisotropy.a2,
-      &p.memory.G, &p.memory.alpha, &p.memory.m, &p.memory.k, &p.memory.lambda, &p.memory.c_F, &p.memory.a2};
+      &p.memory.G, &p.memory.alpha, &p.memory.m, &p.memory.k, &p.memory.lambda, &p.memory.c_F, &p.memory.a2,
+      &p.memory.chi};
 }
 
 struct ParameterInfo {

@@ -204,7 +204,7 @@ inline Coverage coverage_of_steady_laws(const CoverageStudy& study) {
 /// that meet such data best. Few rows and long steps, for speed; they are the same for the truth.
 inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   LawParameters<double> truth = interior_truth();
-  truth.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1};
+  truth.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1, 0.7};
   SyntheticOptions options;
   options.rows = 12;
   options.rung = Rung::memory;
@@ -221,7 +221,7 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
                                 synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.73)}));
   }
   fit::CalibrationOptions calibration;
-  calibration.max_step = 3e-2;
+  calibration.max_step = 1e-2;
   calibration.stiffness_window = 0.04;
   const LawParameters<double> target = fit::calibrate(clean, calibration, {}).parameters;
   Coverage coverage;

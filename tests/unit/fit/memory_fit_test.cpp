@@ -15,7 +15,7 @@ using testing::SyntheticOptions;
 /// Parameters of the size that DEM gives.
 LawParameters<double> truth() {
   LawParameters<double> p = testing::synthetic_truth();
-  p.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1};
+  p.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1, 0.7};
   return p;
 }
 
@@ -56,8 +56,9 @@ TEST(MemoryFit, GivesBackWhatMadeTheData) {
   EXPECT_NEAR(law.memory.lambda, expected.memory.lambda, 1e-2);
   EXPECT_NEAR(law.memory.c_F, expected.memory.c_F, 1e-4);
   EXPECT_NEAR(law.memory.a2, expected.memory.a2, 1e-5);
+  EXPECT_NEAR(law.memory.chi, expected.memory.chi, 1e-4);
   EXPECT_EQ(law.memory.m, 2) << "fixed";
-  for (const char* name : {"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.c_F", "memory.a2"})
+  for (const char* name : {"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.c_F", "memory.a2", "memory.chi"})
     EXPECT_EQ(estimate(fit, name).status, Status::fitted) << name;
 }
 

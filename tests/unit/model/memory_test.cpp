@@ -14,7 +14,7 @@ namespace {
 LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.782, 0.59, 2, 16.5, 160, 12, 1.18};
+  p.memory = {0.782, 0.59, 2, 16.5, 160, 12, 1.18, 0.8};
   return p;
 }
 
@@ -27,19 +27,27 @@ LawState<double> rate(const LawParameters<double>& p, const LawState<double>& y,
   return law_rate(p, Rung::memory, Coupling::energy, y, nu, d);
 }
 
+double bent(double x) { return (x + std::sqrt(x * x + 25e-6) - 5e-3) / 2; }
+
 TEST(Memory, InvariantFormOnCoaxialPaths) {
-  // with sg the sign of the shear: S = 1 - xi^2, xi = sg (s - s_r)/Delta, Delta = s_max - sg s_r
+  // with sg the sign of the shear: S = 1 - q xi^2, xi = sg (s - s_r)/Delta, Delta = s_lim - sg s_r
   const LawParameters<double> p = parameters();
+  int dilating = 0, partly = 0, not_loading = 0;
   for (const double nu : {0.68, 0.74, 0.82}) {
     const double s_max = p.stress_ratio_max.value(nu, p.shear_nu_c), F_max = p.fabric_max.value(nu, p.shear_nu_c);
     for (const double sg : {1.0, -1.0}) {
-      for (const double dx : {-0.8, 0.0, 1.3}) {
-        const double P = p.isotropic.P_star(nu), F = 0.05, s_r = -sg * 0.1, s = s_r + sg * 0.06, de = 1.7;
+      for (const double dx : {-0.8, 0.0, 1.3, 20.0}) {
+        const double P = p.isotropic.P_star(nu), F = sg * 0.05, s_r = -sg * 0.1, s = s_r + sg * 0.2, de = 1.7;
         const LawState<double> r = rate(p, coaxial(P, s, F, s_r), nu, {dx, de, sg * kN});
         const double B = p.isotropic.B_star(nu), A2 = 1.18 * B * F, A1 = 2.0 / 3 * (A2 - s * P);
-        const double xi = sg * (s - s_r) / (s_max - sg * s_r), S = 1 - xi * xi, f = sg * F / F_max;
-        const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59);
+        const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59), f = sg * F / F_max;
         const double P_t = P + (p.steady.P_star(nu) - P) * f * std::abs(f);
+        const double s_lim = s_max + 0.8 * bent(16.5 * (P_t - P) / B);
+        const double q = std::clamp(1 - B * std::max(dx, 0.0) * sg * (s - 1.18 * F) / (DG * de), 0.0, 1.0);
+        const double xi = sg * (s - s_r) / (s_lim - sg * s_r), S = 1 - q * xi * xi;
+        dilating += s_lim > 1.01 * s_max ? 1 : 0;
+        partly += q > 0 && q < 1 ? 1 : 0;
+        not_loading += q == 0 ? 1 : 0;
         EXPECT_NEAR(r.P, B * dx + (A1 * S * sg + 16.5 * (P_t - P) * xi) * de, 1e-12);
         EXPECT_NEAR(r.sigma.dot(kN), A2 * dx + DG * S * sg * de, 1e-12);
         EXPECT_NEAR(r.F.dot(kN), 160 * (F_max / s_max * s - F) * de - 12 * F * std::max(dx, 0.0), 1e-12);
@@ -47,6 +55,41 @@ TEST(Memory, InvariantFormOnCoaxialPaths) {
         EXPECT_TRUE(r.s_r.isZero(0));
       }
     }
+  }
+  EXPECT_GT(dilating, 0);
+  EXPECT_GT(partly, 0);
+  EXPECT_GT(not_loading, 0);
+}
+
+TEST(Memory, WhileItDilatesItBearsMore) {
+  // flow vanishes at s_lim, in proportion to the dilatancy k (P_t - P)/B; a packing at its sheared pressure has s_max.
+  const LawParameters<double> p = parameters();
+  const double nu = 0.69, F = p.fabric_max.value(nu, p.shear_nu_c), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
+  const double P_D2 = p.steady.P_star(nu);
+  for (const double P : {p.isotropic.P_star(nu), 0.5 * (p.isotropic.P_star(nu) + P_D2), P_D2, 1.02 * P_D2}) {
+    const double nu_P = nu * std::exp((P - p.isotropic.P_star(nu)) / p.isotropic.B_star(nu));
+    const double dilatancy = 16.5 * (P_D2 - P) / p.isotropic.B_star(nu_P);
+    const double s_lim = s_max + 0.8 * bent(dilatancy);
+    EXPECT_NEAR(rate(p, coaxial(P, s_lim, F, 0), nu, {0, 1, kN}).sigma.norm(), 0, 1e-14) << P;
+    EXPECT_GT(rate(p, coaxial(P, 0.99 * s_lim, F, 0), nu, {0, 1, kN}).sigma.dot(kN), 0) << P;
+  }
+}
+
+TEST(Memory, OnTheLimitCompressionTakesTheStressAlong) {
+  // What compression would take from s, shear gives back elastically: dsigma' = s B dx as long as shear gives enough.
+  LawParameters<double> p = parameters();
+  p.memory.chi = 0;
+  const double nu = 0.74, P = p.steady.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
+  const double nu_P = nu * std::exp((P - p.isotropic.P_star(nu)) / p.isotropic.B_star(nu)), B = p.isotropic.B_star(nu_P);
+  const LawState<double> y = coaxial(P, s_max, 0.05, 0);
+  for (const double dx : {0.0, 0.3, 1.0}) EXPECT_NEAR(rate(p, y, nu, {dx, 1, kN}).sigma.dot(kN), s_max * B * dx, 1e-13);
+  const double DG = 0.782 * std::pow(nu_P / p.isotropic.pressure.nu_c - 1, 0.59);
+  EXPECT_NEAR(rate(p, y, nu, {9, 1, kN}).sigma.dot(kN), 1.18 * B * 0.05 * 9 + DG, 1e-13) << "no longer";
+  // and where shear fades, so does its part, whatever the direction
+  const LawState<double> alone = rate(p, y, nu, {1, 0, kZero});
+  for (const double sg : {1.0, -1.0}) {
+    const LawState<double> faint = rate(p, y, nu, {1, 1e-9, sg * kN});
+    EXPECT_LE((faint.sigma - alone.sigma).norm() + (faint.F - alone.F).norm() + std::abs(faint.P - alone.P), 1e-6);
   }
 }
 
@@ -103,7 +146,8 @@ TEST(Memory, StressRatioEndsOnItsLimitWhateverTheReversal) {
 }
 
 TEST(Memory, NearTheLimitNothingStiffensAndFromBeyondItComesBack) {
-  const LawParameters<double> p = parameters();
+  LawParameters<double> p = parameters();
+  p.memory.chi = 0;
   const double nu = 0.7, P = p.isotropic.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
   const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59);
   for (const double beyond : {0.999, 1.0, 1.001, 1.3}) {
@@ -111,11 +155,18 @@ TEST(Memory, NearTheLimitNothingStiffensAndFromBeyondItComesBack) {
     const double slope = rate(p, y, nu, {0, 1, kN}).sigma.dot(kN);
     EXPECT_NEAR(slope, DG * (1 - beyond) / kLeastDistance, 1e-12) << beyond;
   }
+  // also where shear along N would miss the limit
+  Deviator<double> M = kZero;
+  M(3) = 1;
+  ASSERT_EQ(M.dot(kN), 0);
+  const LawState<double> aside{P, 1.2 * s_max * P * M, 0.1 * kN, 1.2 * s_max * M};
+  EXPECT_NEAR(rate(p, aside, nu, {0, 1, kN}).sigma.dot(M), -DG * 0.2 / kLeastDistance, 1e-12);
 }
 
 TEST(Memory, PressureGoesToItsShearedLevel) {
   // At s = s_max, F = F_max all terms but the relaxation vanish: dP = k (P_D2 - P) de.
-  const LawParameters<double> p = parameters();
+  LawParameters<double> p = parameters();
+  p.memory.chi = 0;
   const double nu = 0.69, P = p.isotropic.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
   const LawState<double> y = coaxial(P, s_max, p.fabric_max.value(nu, p.shear_nu_c), 0);
   EXPECT_NEAR(rate(p, y, nu, {0, 1, kN}).P, 16.5 * (p.steady.P_star(nu) - P), 1e-14);

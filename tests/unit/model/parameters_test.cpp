@@ -100,7 +100,8 @@ TEST(Parameters, EachNameIsTheFieldThatItSays) {
                                                       {"memory.k", &p.memory.k},
                                                       {"memory.lambda", &p.memory.lambda},
                                                       {"memory.c_F", &p.memory.c_F},
-                                                      {"memory.a2", &p.memory.a2}};
+                                                      {"memory.a2", &p.memory.a2},
+                                                      {"memory.chi", &p.memory.chi}};
   ASSERT_EQ(expected.size(), kParameterCount);
   const auto field = fields(p);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
