@@ -38,7 +38,7 @@ Factor factor_of(const Eigen::MatrixXd& J) {
     inverse_norm(k) = norm > 0 ? 1 / norm : 0;
     if (!(norm > 0)) factor.identified[static_cast<std::size_t>(k)] = false;
   }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(J * inverse_norm.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J * inverse_norm.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
   const Eigen::VectorXd& sigma = svd.singularValues();
   Eigen::Index rank = 0;
   while (rank < sigma.size() && sigma(rank) > kNullSingularValue * sigma(0)) ++rank;
