@@ -53,7 +53,7 @@ const std::array<ParameterInfo, kParameterCount>& parameter_table() {
       {"memory.lambda", "lambda", "memory", "rate in shear at which fabric follows stress", 1, 2000, 100, none},
       {"memory.c_F", "c_F", "memory", "dilution of fabric by compression", -100, 100, 5, none},
       {"memory.a2", "a_2", "memory", "A2/(B F_dev) with fabric that compression dilutes", -10, 10, 1, none},
-      {"memory.chi", "chi", "memory", "rise of the limit of the stress ratio with dilatancy", 0, 20, 0.5, none},
+      {"memory.chi", "chi", "memory", "rise of the limit of the stress ratio with dilatancy", 0, 3, 0.5, none},
   }};
   // clang-format on
   return table;
