@@ -34,6 +34,10 @@ SUNContext new_context() {
 constexpr double kLocalShare = 0.5;
 constexpr int kMaxAdamsOrder = 6;
 
+// Slopes are read as widths of bands and elasticities. Their rates are differences of rates, good to some 1e-11.
+constexpr double kSlopeShare = 10;
+constexpr double kLeastSlopeTolerance = 1e-10;
+
 }  // namespace
 
 struct Cvode::Impl : OdeCallbacks {
@@ -45,8 +49,10 @@ struct Cvode::Impl : OdeCallbacks {
   Owned<SUNLinearSolver, SUNLinSolFree> linear;
   Owned<SUNNonlinearSolver, SUNNonlinSolFree> nonlinear;
   OdeSensitivities sensitivities;
-  std::vector<Owned<N_Vector, N_VDestroy>> slopes;  // dy/dp of each parameter
-  std::vector<N_Vector> slope_handles;              // as the library takes them
+  std::vector<Owned<N_Vector, N_VDestroy>> slopes;        // dy/dp of each parameter
+  std::vector<N_Vector> slope_handles;                    // as the library takes them
+  std::vector<Owned<N_Vector, N_VDestroy>> slope_errors;  // absolute, that a step may make
+  std::vector<N_Vector> slope_error_handles;
   Owned<SUNNonlinearSolver, SUNNonlinSolFree> slopes_nonlinear;
   bool carried = false;  // since the last start()
   Owned<void*, free_memory> memory;
@@ -98,6 +104,7 @@ struct Cvode::Impl : OdeCallbacks {
   void initialise(double t_0, const Tolerances& tolerances);
   void initialise_sensitivities(Method method);
   void restart_sensitivities(std::span<const double> from);
+  void hold_sensitivities();
 };
 
 namespace {
@@ -149,11 +156,13 @@ void Cvode::Impl::initialise_sensitivities(Method method) {
     slopes.emplace_back(created(N_VClone(y.get()), "a sensitivity"));
     N_VConst(0, slopes.back().get());
     slope_handles.push_back(slopes.back().get());
+    slope_errors.emplace_back(created(N_VClone(y.get()), "a tolerance"));
+    slope_error_handles.push_back(slope_errors.back().get());
   }
   require(CVodeSensInit1(cvode, count, CV_STAGGERED, evaluate_sensitivity_rate, slope_handles.data()),
           "CVodeSensInit1");
   require(CVodeSetSensParams(cvode, nullptr, sensitivities.magnitudes.data(), nullptr), "CVodeSetSensParams");
-  require(CVodeSensEEtolerances(cvode), "CVodeSensEEtolerances");
+  require(CVodeSetSensErrCon(cvode, SUNTRUE), "CVodeSetSensErrCon");
   if (method == Method::adams) {
     slopes_nonlinear.reset(created(SUNNonlinSol_FixedPointSens(count, y.get(), 0, context.get()), "the iteration"));
     require(CVodeSetNonlinearSolverSensStg(cvode, slopes_nonlinear.get()), "CVodeSetNonlinearSolverSensStg");
@@ -169,6 +178,18 @@ void Cvode::Impl::restart_sensitivities(std::span<const double> from) {
   for (std::size_t k = 0; k < slopes.size(); ++k)
     std::copy_n(&from[k * size], size, N_VGetArrayPointer(slope_handles[k]));
   require(CVodeSensReInit(memory.get(), CV_STAGGERED, slope_handles.data()), "CVodeSensReInit");
+  hold_sensitivities();
+}
+
+/// Each dy/dp_k to a part of itself or of what is typical of y over p_k.
+void Cvode::Impl::hold_sensitivities() {
+  const double part = std::max(kSlopeShare * relative, kLeastSlopeTolerance);
+  std::vector<double> typical(size);
+  sensitivities.typical(typical.data());
+  for (std::size_t k = 0; k < slopes.size(); ++k)
+    std::transform(typical.begin(), typical.end(), N_VGetArrayPointer(slope_error_handles[k]),
+                   [&](double y_i) { return part * y_i / sensitivities.magnitudes[k]; });
+  require(CVodeSensSVtolerances(memory.get(), part, slope_error_handles.data()), "CVodeSensSVtolerances");
 }
 
 Cvode::Cvode(std::size_t size, const Tolerances& tolerances, OdeRate rate, OdeEvent event, OdeScale scale,

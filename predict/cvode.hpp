@@ -26,11 +26,12 @@ using OdeScale = std::function<void(double t, const double* y, double* scale)>;
 /// Writes the rate (df/dy) s + df/dp_k at (t, y) of the sensitivity s = dy/dp_k. May throw.
 using OdeSensitivityRate = std::function<void(std::size_t k, double t, const double* y, const double* s, double* rate)>;
 
-/// dy/dp_k, carried along beside y: corrected after each step of y, which is made shorter where that fails but not for
-/// their error: that follows y's.
+/// dy/dp_k, carried along beside y, each to ten times the relative tolerance of y (and no less than 1e-10) of
+/// itself, or of typical y over the magnitude of p_k where it is less than that.
 struct OdeSensitivities {
-  std::vector<double> magnitudes;  ///< of each p_k: what the tolerance of its sensitivity refers to, positive
+  std::vector<double> magnitudes;  ///< of each p_k, positive
   OdeSensitivityRate rate;
+  std::function<void(double* y)> typical;  ///< writes for each unknown what is typical of it, at start()
 };
 
 /// How one call of Cvode::advance ended.

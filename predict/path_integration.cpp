@@ -43,6 +43,14 @@ std::span<double> flat(std::vector<Slope>& slopes) {
   return slopes.empty() ? std::span<double>() : std::span(slopes.front().data(), kUnknowns * slopes.size());
 }
 
+/// Of P, sigma', F', s_r in steady shear.
+void write_typical(double P, double* y) {
+  y[0] = P;
+  deviator_at(y + 1).setConstant(0.1 * P);
+  deviator_at(y + 6).setConstant(0.1);
+  deviator_at(y + 11).setConstant(0.1);
+}
+
 }  // namespace
 
 double least_principal_stress(double P, const Deviator<double>& sigma) {
@@ -63,8 +71,11 @@ PathIntegration::PathIntegration(const LawParameters<double>& parameters, Rung r
           kUnknowns, tolerances, [this](double e, const double* y, double* rate) { law_->rate(e, y, rate); },
           [this](double e, const double* y) { return event(e, y); },
           [this](double e, const double* y, double* scale) { law_->scale(e, y, scale); },
-          {magnitudes_of(start.steps), [this](std::size_t k, double e, const double* y, const double* s,
-                                              double* rate) { sensitivity_->rate(k, e, y, s, rate); }}),
+          {magnitudes_of(start.steps),
+           [this](std::size_t k, double e, const double* y, const double* s, double* rate) {
+             sensitivity_->rate(k, e, y, s, rate);
+           },
+           [this](double* y) { write_typical(state_.P, y); }}),
       state_(start.state) {
   for (const LawState<double>& slope : start.slopes) slopes_.push_back(packed(slope));
 }
