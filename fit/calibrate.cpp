@@ -9,6 +9,7 @@
 #include "fit/data_set.hpp"
 #include "fit/density_law_fit.hpp"
 #include "fit/evolution_fit.hpp"
+#include "fit/lode_fit.hpp"
 #include "fit/memory_fit.hpp"
 #include "fit/outliers.hpp"
 #include "fit/staged_laws.hpp"
@@ -90,10 +91,12 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   fit_shear_laws(data, calibration, options, control);
   const std::vector<Trajectory> trajectories =
       trajectories_of(data, calibration.parameters.isotropic.pressure.nu_c, options);
-  record(calibration, fit_evolution(trajectories, calibration.parameters, unseen_laws(calibration.shear), options,
+  const ByLodeAngle sheared = by_lode_angle(trajectories);
+  record(calibration, fit_evolution(sheared.reference, calibration.parameters, unseen_laws(calibration.shear), options,
                                     control, calibration.errors));
-  set_anisotropy(trajectories, calibration, options);
-  fit_memory_rung(trajectories, calibration, options, control);
+  set_anisotropy(sheared.reference, calibration, options);
+  record(calibration, fit_lode(sheared.others, calibration.parameters, options, control, calibration.errors));
+  fit_memory_rung(sheared.reference, calibration, options, control);
   calibration.covariance = calibration.errors.covariance();
   calibration.scatter = packing_scatter(data, calibration.parameters, options.iso_nu_min);
   set_ranges(trajectories, calibration);

@@ -4,7 +4,8 @@
 //   2 shear: Eqs. (17), (18) per constant-volume test, windows of equations.md 0
 //   3 Eq. (20) over density for s_max, beta_s, F_max, beta_F
 //   4 evolution: Eq. (16) on all calibration trajectories at once, started from the staged values, exact derivatives
-//   5 memory: what the memory rung adds, on the same trajectories, with the laws of the stages before
+//   5 lode: what the Lode angle changes, on shear at constant volume unlike D2, which the stages 3, 4 and 6 leave out
+//   6 memory: what the memory rung adds, on the trajectories of 4, with the laws of the stages before
 // Validation tests are refused here, not filtered silently.
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 #pragma once
-// Laws of the modes that the calibrated law does not read, from tests of role description: a row of Table 2 each for UNI
+// Laws of the modes that the calibrated law does not read as such, from tests of role description: a row of Table 2 each for UNI
 // and D3, Eq. (20) for D3, and D2 from the loading branch beside that from the unloading branch. The stages are those of
 // the calibration (staged_laws.hpp) on other tests; nothing of it flows back.
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit/evolution_fit.hpp"
+#include "fit/lode_fit.hpp"
 #include "fit/trajectory_misfit.hpp"
 
 namespace grainlaw::fit {
@@ -77,14 +78,12 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
   return block;
 }
 
-}  // namespace
-
-EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                                   const std::vector<std::string>& held, const CalibrationOptions& options) {
+EvolutionProblem problem_of(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
+                            const std::vector<std::string>& free, const CalibrationOptions& options) {
   EvolutionProblem problem;
   std::vector<std::size_t> index;
   const auto value = fields(start);
-  for (const std::string& name : free_names(options.coupling, held)) {
+  for (const std::string& name : free) {
     index.push_back(parameter_index(name));
     FreeParameter p = free_parameter(name, *value[index.back()]);
     if (name == "pressure.nu_c")
@@ -93,6 +92,18 @@ EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, 
   }
   for (const Trajectory& t : trajectories) problem.blocks.push_back(block_of(t, start, index, options));
   return problem;
+}
+
+}  // namespace
+
+EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
+                                   const std::vector<std::string>& held, const CalibrationOptions& options) {
+  return problem_of(trajectories, start, free_names(options.coupling, held), options);
+}
+
+EvolutionProblem lode_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
+                              const CalibrationOptions& options) {
+  return problem_of(trajectories, start, lode_parameters(), options);
 }
 
 }  // namespace grainlaw::fit

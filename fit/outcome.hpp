@@ -96,6 +96,7 @@ struct ShearFit {
   Mode mode = Mode::D2;
   std::uint64_t seed = 0;
   double nu = 0;                                        ///< volume fraction of the test [-]
+  double lode = 0;                                      ///< l of its shear, LawDirection [-]
   double eps_dev_max = 0;                               ///< deviatoric strain reached [-]
   Estimate s_max, beta_s, F_max, beta_F;                ///< of the fits; one run, hence without standard error
   double s_0 = 0, F_0 = 0;                              ///< start values, measured in the first row [-]

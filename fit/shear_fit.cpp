@@ -137,6 +137,7 @@ ShearFit fit_shear(const TestRecord& test, double nu_c, const CalibrationOptions
   fit.mode = test.path.segments.front().mode;
   fit.seed = test.packing.seed;
   fit.nu = first.nu;
+  fit.lode = direction.lode;
   std::vector<double> eps_dev, s, F;
   double C_star = 0, phi_r = 0, P = 0, s_sum = 0, F_sum = 0;
   int steady = 0;

@@ -7,6 +7,7 @@
 
 #include "fit/density_fit.hpp"
 #include "fit/density_law_fit.hpp"
+#include "fit/lode_fit.hpp"
 #include "fit/shear_fit.hpp"
 
 namespace grainlaw::fit {
@@ -78,12 +79,18 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
   Stage stage;
   calibration.shear = fit_shear_tests(data, calibration.parameters.isotropic.pressure.nu_c, options, control, stage);
   calibration.stages.push_back(stage);
+  const std::vector<ShearFit>& shear = calibration.shear;
+  const bool any_like_D2 =
+      std::any_of(shear.begin(), shear.end(), [](const ShearFit& fit) { return is_like_D2(fit.lode); });
+  std::vector<ShearFit> of_law;
   std::vector<int> cluster;
-  for (const TestRecord* test : data.pure_shear) cluster.push_back(packing_of(data, *test));
-  for (const ShearQuantity& quantity : kShearQuantities) {
-    record(calibration,
-           fit_density_law(quantity, calibration.shear, cluster, calibration.parameters, options, control));
+  for (std::size_t i = 0; i < shear.size(); ++i) {
+    if (any_like_D2 && !is_like_D2(shear[i].lode)) continue;
+    of_law.push_back(shear[i]);
+    cluster.push_back(packing_of(data, *data.pure_shear[i]));
   }
+  for (const ShearQuantity& quantity : kShearQuantities)
+    record(calibration, fit_density_law(quantity, of_law, cluster, calibration.parameters, options, control));
 }
 
 bool all_converged(const Calibration& calibration) {

@@ -26,8 +26,8 @@ void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeri
 void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
                      const RunControl& control);
 
-/// Stages "shear", "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate" on the tests at constant volume; reads
-/// nu_c of Eq. (14).
+/// Stages "shear", "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate" on the tests at constant volume, Eq. (20)
+/// on those like D2 where there are any; reads nu_c of Eq. (14).
 void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
                     const RunControl& control);
 

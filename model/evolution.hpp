@@ -4,6 +4,8 @@
 //   dP      = B dx + A1 S de,                                  S  = 1 - <sigma',N>/(P s_max)
 //   dsigma' = a2 B F' dx + DG (N - sigma'/(P s_max)) de,       DG = beta_s s_max P
 //   dF'     = beta_F (F_max N - F') de
+// The limits of Eq. (20) are those of D2, l = 0; with l = -cos 3 theta, theta the Lode angle of the shear
+// (docs/decisions/0005-memory-law.md), they are s_max (1 + psi_s l) and F_max (1 - psi_F l (nu/nu_c - 1)).
 //   dx = -d eps_vol, de = |d eps'|, N = d eps'/de (compression positive); nu is a function of the path.
 // Coupling::energy: A1 = (2/3)(a2 B <F',N> - <sigma',N>). Coupling::single: A1 = a0 <F',N>, A2 = (a0/3) F'.
 // On monotone shear with A1 = 0 this is Eqs. (17) and (18) exactly.
@@ -23,11 +25,19 @@ struct LawModuli {
   T beta_s{};  ///< its growth rate [-]
   T F_max{};   ///< limit of the deviatoric fabric [-]
   T beta_F{};  ///< its growth rate [-]
+  T F_fall{};  ///< fall of F_max from D2 to D3, relative [-]
   // of the memory rung only
   T nu{};        ///< volume fraction [-]
   T P_steady{};  ///< pressure of steady shear [-]
 };
 
+/// Fall of F_max from D2 to D3, relative [-]. Below one for nu < 1.
+template <class T>
+T fabric_fall(const LawParameters<T>& p, double nu) {
+  return p.lode.fabric * (nu / p.shear_nu_c - 1.0);
+}
+
+/// Those of D2.
 template <class T>
 LawModuli<T> moduli_at(const LawParameters<T>& p, double nu) {
   LawModuli<T> m;
@@ -38,6 +48,15 @@ LawModuli<T> moduli_at(const LawParameters<T>& p, double nu) {
   m.beta_s = p.stress_rate.value(nu, p.shear_nu_c);
   m.F_max = p.fabric_max.value(nu, p.shear_nu_c);
   m.beta_F = p.fabric_rate.value(nu, p.shear_nu_c);
+  m.F_fall = fabric_fall(p, nu);
+  return m;
+}
+
+/// `m` with the limits of shear along `direction`.
+template <class T>
+LawModuli<T> along(LawModuli<T> m, const LodeEffect<T>& lode, const LawDirection& direction) {
+  m.s_max *= 1.0 + lode.stress_ratio * direction.lode;
+  m.F_max *= 1.0 - m.F_fall * direction.lode;
   return m;
 }
 
@@ -57,7 +76,7 @@ AnisotropyModuli<T> anisotropy_moduli(const Anisotropy<T>& a, Coupling coupling,
 }
 
 /// Right-hand side of Eq. (16) without corotational terms: d(state)/de with the moduli of the current volume fraction.
-/// Finite for P > 0 and finite arguments.
+/// Finite for P > 0 and finite arguments. `m` with limits along `direction`.
 template <class T>
 LawState<T> evolution_rate(const LawModuli<T>& m, const Anisotropy<T>& anisotropy, Coupling coupling,
                            const LawState<T>& y, const LawDirection& direction) {
@@ -76,7 +95,7 @@ LawState<T> evolution_rate(const LawModuli<T>& m, const Anisotropy<T>& anisotrop
 template <class T>
 LawState<T> evolution_rate(const LawParameters<T>& p, Coupling coupling, const LawState<T>& y, double nu,
                            const LawDirection& direction) {
-  return evolution_rate(moduli_at(p, nu), p.anisotropy, coupling, y, direction);
+  return evolution_rate(along(moduli_at(p, nu), p.lode, direction), p.anisotropy, coupling, y, direction);
 }
 
 }  // namespace grainlaw

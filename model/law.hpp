@@ -35,13 +35,15 @@ void turn_corner(Rung rung, LawState<T>& y, const LawDirection& direction) {
   if (rung == Rung::memory && reversal_value(y, direction) < 0.0) reverse(y);
 }
 
-/// d(state)/de of `rung` at a state (`coupling` is that of Eq. (16) alone; memory has the energy's), with `m` by law_moduli(p, nu, rung). Finite for P > 0 and finite arguments.
+/// d(state)/de of `rung` at a state (`coupling` is that of Eq. (16) alone; memory has the energy's), with `m` by law_moduli(p, nu, rung). Finite for
+/// P > 0 and finite arguments.
 template <class T>
 LawState<T> law_rate(const LawModuli<T>& m, const LawParameters<T>& p, Rung rung, Coupling coupling,
                      const LawState<T>& y, const LawDirection& direction) {
-  LawState<T> rate = rung == Rung::memory      ? memory_rate(m, p, y, direction)
-                     : rung == Rung::evolution ? evolution_rate(m, p.anisotropy, coupling, y, direction)
-                                               : reduced_rate(m, y, direction);
+  const LawModuli<T> of_shear = along(m, p.lode, direction);
+  LawState<T> rate = rung == Rung::memory      ? memory_rate(of_shear, p, y, direction)
+                     : rung == Rung::evolution ? evolution_rate(of_shear, p.anisotropy, coupling, y, direction)
+                                               : reduced_rate(of_shear, y, direction);
   add_corotation(y, direction, rate);
   return rate;
 }

@@ -25,6 +25,7 @@ struct LawDirection {
   double de = 0;                                   ///< |D|_dev >= 0 [-]
   Deviator<double> N = Deviator<double>::Zero();   ///< -D'/|D|_dev, zero without shear [-]
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();  ///< w, the axial vector of W [rad per unit of the path parameter]
+  double lode = 0;  ///< l = -cos 3 theta, theta the Lode angle of D: 0 in D2, 1 in D3 and UNI, -1 in their reverse [-]
 };
 
 /// From a strain-rate direction (tension positive).
@@ -36,6 +37,7 @@ inline LawDirection law_direction(const StrainRate& rate) {
   if (norm > 1e-12 * rate.tensor.norm()) {
     direction.de = norm;
     direction.N = d / norm;
+    direction.lode = 13.5 * tensor_of(direction.N).determinant();  // J3, where J2 = 1/3
   }
   return direction;
 }

@@ -77,6 +77,7 @@ LawModuli<T> memory_moduli(const LawParameters<T>& p, double nu) {
   m.P_steady = p.steady.P_star(nu);
   m.s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
   m.F_max = p.fabric_max.value(nu, p.shear_nu_c);
+  m.F_fall = fabric_fall(p, nu);
   return m;
 }
 
@@ -115,7 +116,7 @@ MemoryLoading<T> memory_loading(const Deviator<T>& s, Deviator<T> s_r, const Dev
   return {xi, N - gone * (pow(xi, m - 1.0) / Delta)};
 }
 
-/// Right-hand side without corotational terms; `m` by memory_moduli. Finite for P > 0 and nu_P > nu_c.
+/// Right-hand side without corotational terms; `m` by memory_moduli, with limits along `direction`. Finite for P > 0 and nu_P > nu_c.
 template <class T>
 LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y,
                         const LawDirection& direction) {

@@ -43,6 +43,8 @@ const std::array<ParameterInfo, kParameterCount>& parameter_table() {
       {"fabric_rate.Q_limit", "beta_F: Q_max", "20", "growth rate of the fabric at large density", 0, 500, 0, 0.0},
       {"fabric_rate.Q_c", "beta_F: Q_c", "20", "growth rate of the fabric: excess at jamming", 0, 1000, 50, 57.89},
       {"fabric_rate.alpha", "beta_F: alpha", "20", "growth rate of the fabric: decay with density", 0.1, 100, 5, 5.366},
+      {"lode.stress_ratio", "psi_s", "Lode angle", "rise of the steady stress ratio from D2 to D3, relative", -0.5, 0.5, 0, none},
+      {"lode.fabric", "psi_F", "Lode angle", "fall of the steady deviatoric fabric from D2 to D3, relative, per nu/nu_c - 1", -1.5, 1.5, 0, none},
       {"anisotropy.a0", "a_0", "19", "A* = a0 F_dev of the printed single coupling", 0, 10, 0.3, 0.137},
       {"anisotropy.a1", "a_1", "16", "A1/(B F_dev), pressure row", -10, 10, 0.7, none},
       {"anisotropy.a2", "a_2", "16", "A2/(B F_dev), deviatoric stress row", -10, 10, 1, none},

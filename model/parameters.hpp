@@ -25,6 +25,13 @@ struct Anisotropy {
   T a0{}, a1{}, a2{};
 };
 
+/// What the Lode angle of the shear changes of the limits of Eq. (20), which are those of D2; evolution.hpp.
+template <class T>
+struct LodeEffect {
+  T stress_ratio{};  ///< psi_s: relative rise of s_max in D3 [-]
+  T fabric{};        ///< psi_F: relative fall of F_max in D3, per nu/nu_c - 1 [-]
+};
+
 /// What the memory rung adds to Eq. (16), memory.hpp.
 template <class T>
 struct Memory {
@@ -48,30 +55,62 @@ struct LawParameters {
   ExponentialLaw<T> stress_rate;       ///< beta_s(nu)
   ExponentialLaw<T> fabric_max;        ///< F_max(nu)
   ExponentialLaw<T> fabric_rate;       ///< beta_F(nu)
+  LodeEffect<T> lode;
   Anisotropy<T> anisotropy;
   Memory<T> memory;
 };
 
-inline constexpr std::size_t kParameterCount = 42;
+inline constexpr std::size_t kParameterCount = 44;
 
 /// The fields in the order of parameter_table(). `Law` is LawParameters<T> or const LawParameters<T>.
 template <class Law>
 auto fields(Law& p) {
   auto& i = p.isotropic;
   auto& s = p.steady;
-  return std::array{
-      &i.coordination.C1, &i.coordination.alpha, &i.coordination.nu_c, &i.rattlers.phi_c, &i.rattlers.phi_v,
-      &i.pressure.p0, &i.pressure.gamma_p, &i.pressure.nu_c,
-      &s.coordination.C1, &s.coordination.alpha, &s.coordination.nu_c, &s.rattlers.phi_c, &s.rattlers.phi_v,
-      &s.pressure.p0, &s.pressure.gamma_p, &s.pressure.nu_c,
-      &p.overlap_D, &p.fabric_g3, &p.shear_nu_c,
-      &p.stress_ratio_max.Q_limit, &p.stress_ratio_max.Q_c, &p.stress_ratio_max.alpha,
-      &p.stress_rate.Q_limit, &p.stress_rate.Q_c, &p.stress_rate.alpha,
-      &p.fabric_max.Q_limit, &p.fabric_max.Q_c, &p.fabric_max.alpha,
-      &p.fabric_rate.Q_limit, &p.fabric_rate.Q_c, &p.fabric_rate.alpha,
-      &p.anisotropy.a0, &p.anisotropy.a1, &p.anisotropy.a2,
-      &p.memory.G, &p.memory.alpha, &p.memory.m, &p.memory.k, &p.memory.lambda, &p.memory.c_F, &p.memory.a2,
-      &p.memory.chi};
+  return std::array{&i.coordination.C1,
+                    &i.coordination.alpha,
+                    &i.coordination.nu_c,
+                    &i.rattlers.phi_c,
+                    &i.rattlers.phi_v,
+                    &i.pressure.p0,
+                    &i.pressure.gamma_p,
+                    &i.pressure.nu_c,
+                    &s.coordination.C1,
+                    &s.coordination.alpha,
+                    &s.coordination.nu_c,
+                    &s.rattlers.phi_c,
+                    &s.rattlers.phi_v,
+                    &s.pressure.p0,
+                    &s.pressure.gamma_p,
+                    &s.pressure.nu_c,
+                    &p.overlap_D,
+                    &p.fabric_g3,
+                    &p.shear_nu_c,
+                    &p.stress_ratio_max.Q_limit,
+                    &p.stress_ratio_max.Q_c,
+                    &p.stress_ratio_max.alpha,
+                    &p.stress_rate.Q_limit,
+                    &p.stress_rate.Q_c,
+                    &p.stress_rate.alpha,
+                    &p.fabric_max.Q_limit,
+                    &p.fabric_max.Q_c,
+                    &p.fabric_max.alpha,
+                    &p.fabric_rate.Q_limit,
+                    &p.fabric_rate.Q_c,
+                    &p.fabric_rate.alpha,
+                    &p.lode.stress_ratio,
+                    &p.lode.fabric,
+                    &p.anisotropy.a0,
+                    &p.anisotropy.a1,
+                    &p.anisotropy.a2,
+                    &p.memory.G,
+                    &p.memory.alpha,
+                    &p.memory.m,
+                    &p.memory.k,
+                    &p.memory.lambda,
+                    &p.memory.c_F,
+                    &p.memory.a2,
+                    &p.memory.chi};
 }
 
 struct ParameterInfo {

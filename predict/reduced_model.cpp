@@ -24,11 +24,9 @@ Deviator<double> saturating_tensor(const Deviator<double>& limit, const Deviator
 Ratios ratios_at(const LawParameters<double>& p, const Ratios& corner, const LawDirection& direction, double nu,
                  double e) {
   const double eps_dev = direction.de * e;
-  const double nu_c = p.shear_nu_c;
-  return {
-      saturating_tensor(p.stress_ratio_max.value(nu, nu_c) * direction.N, corner.q, p.stress_rate.value(nu, nu_c),
-                        eps_dev),
-      saturating_tensor(p.fabric_max.value(nu, nu_c) * direction.N, corner.F, p.fabric_rate.value(nu, nu_c), eps_dev)};
+  const LawModuli<double> m = along(moduli_at(p, nu), p.lode, direction);
+  return {saturating_tensor(m.s_max * direction.N, corner.q, m.beta_s, eps_dev),
+          saturating_tensor(m.F_max * direction.N, corner.F, m.beta_F, eps_dev)};
 }
 
 PathStates states_of(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,

@@ -84,6 +84,22 @@ std::string summary_of(const fs::path& output, const Dataset& dataset, bool conv
                     {"peak_memory_MB", memory}});
 }
 
+/// Those of role description, and D3 where it is calibration beside D2: its own laws are Table 2's and Table 3's.
+std::vector<TestRecord> described_tests(const Dataset& dataset) {
+  const auto shears_by = [](const TestRecord& test, Mode mode) {
+    return is_pure_shear(test) && test.path.segments.front().mode == mode;
+  };
+  std::vector<TestRecord> all = tests_of(dataset, Role::description), fitted = tests_of(dataset, Role::calibration);
+  if (std::none_of(fitted.begin(), fitted.end(), [&](const TestRecord& t) { return shears_by(t, Mode::D2); }))
+    return all;
+  for (TestRecord& test : fitted) {
+    if (!shears_by(test, Mode::D3)) continue;
+    test.role = Role::description;
+    all.push_back(std::move(test));
+  }
+  return all;
+}
+
 fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output,
                               Session& session) {
   session.progress.begin({1}, "");
@@ -94,9 +110,8 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOpti
         fit::leave_one_out(tests, options, session.progress.control(0, "fit without one packing", session.stop));
   }
   ModeComparison modes;
-  modes.descriptions =
-      fit::describe(tests_of(dataset, Role::description), calibration.parameters.isotropic.pressure.nu_c, options,
-                    session.progress.control(0, "fit of the other modes", session.stop));
+  modes.descriptions = fit::describe(described_tests(dataset), calibration.parameters.isotropic.pressure.nu_c, options,
+                                     session.progress.control(0, "fit of the other modes", session.stop));
   modes.verdicts = verdicts_of(calibration, modes.descriptions, dataset.seeds.size());
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
@@ -141,7 +156,8 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   fit_options.coupling = options.coupling.value_or(spec ? spec->coupling : Coupling::energy);
   if (spec) spec->coupling = fit_options.coupling;
 
-  const std::optional<PrecisionTarget> target = options.target_error ? std::optional(target_of(options, spec)) : std::nullopt;
+  const std::optional<PrecisionTarget> target =
+      options.target_error ? std::optional(target_of(options, spec)) : std::nullopt;
   make_output_folder(options.output);
   const fs::path dataset_output = make_subfolder(options.output, "dataset");
   RunCounts counts;

@@ -199,12 +199,13 @@ inline Coverage coverage_of_steady_laws(const CoverageStudy& study) {
   return coverage;
 }
 
-/// The complete calibration, all stages, of data that the memory rung made: ISO unloading, D2 at three densities and D2->ISO
-/// at one, of each packing. Truth is what the same calibration finds without noise: the parameters of Eq. (16) are those
+/// The complete calibration, all stages, of data that the memory rung made: ISO unloading, D2 at three densities, D3 and
+/// D2->ISO at one, of each packing. Truth is what the same calibration finds without noise: the parameters of Eq. (16) are those
 /// that meet such data best. Few rows and long steps, for speed; they are the same for the truth.
 inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   LawParameters<double> truth = interior_truth();
   truth.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1, 0.7};
+  truth.lode = {0.03, 0.8};
   SyntheticOptions options;
   options.rows = 12;
   options.rung = Rung::memory;
@@ -216,6 +217,8 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
       clean.push_back(maker.test(fmt::format("d2-{}-s{}", nu, seed), seed, nu,
                                  {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.24)}));
     }
+    clean.push_back(
+        maker.test(fmt::format("d3-s{}", seed), seed, 0.80, {synthetic_segment(Mode::D3, ExtentKind::eps_dev, 0.24)}));
     clean.push_back(maker.test(fmt::format("d2-iso-s{}", seed), seed, 0.70,
                                {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.15),
                                 synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.73)}));

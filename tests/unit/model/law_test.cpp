@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "model/error.hpp"
 #include "model/path.hpp"
@@ -55,6 +56,41 @@ TEST(Law, DirectionOfAVelocityGradient) {
   const Eigen::Matrix3d W = 0.5 * (L - L.transpose());
   const Eigen::Vector3d a(0.3, -0.8, 0.5);
   EXPECT_LE((W * a - direction.spin.cross(a)).norm(), 1e-15);
+}
+
+// Table 1: theta of the strain rate is 30 degrees in D2, 60 in D3 and UNI, 0 in their reverse.
+TEST(Law, LodeAngleOfTheShear) {
+  const auto lode = [](Mode mode, bool reverse) { return law_direction(direction_of(mode, "xyz", reverse)).lode; };
+  EXPECT_NEAR(lode(Mode::D2, false), 0, 1e-15);
+  EXPECT_NEAR(lode(Mode::D2, true), 0, 1e-15);
+  for (const Mode mode : {Mode::D3, Mode::UNI}) {
+    EXPECT_NEAR(lode(mode, false), 1, 1e-14) << to_string(mode);
+    EXPECT_NEAR(lode(mode, true), -1, 1e-14) << to_string(mode);
+  }
+  EXPECT_EQ(lode(Mode::ISO, false), 0);
+  const Eigen::Matrix3d L = some_gradient(), D = 0.5 * (L + L.transpose());
+  EXPECT_NEAR(law_direction(L).lode, -std::cos(3 * lode_angle(D) * std::numbers::pi / 180), 1e-12);
+}
+
+TEST(Law, LodeAngleChangesTheLimitsAndNothingElse) {
+  LawParameters<double> p = testing::coupled_parameters(), changed = p;
+  p.memory = changed.memory = {0.8, 0.7, 2, 24, 200, 9, 1.0, 0.7};
+  changed.lode = {0.03, 0.9};
+  const double nu = 0.76, y = nu / p.shear_nu_c - 1;
+  for (const Rung rung : kRungs) {
+    for (const double sense : {1.0, -1.0}) {
+      const LawDirection direction = law_direction(direction_of(Mode::D3, "xyz", sense < 0));
+      LawParameters<double> same = p;
+      for (double* Q : {&same.stress_ratio_max.Q_limit, &same.stress_ratio_max.Q_c}) *Q *= 1 + sense * 0.03;
+      for (double* Q : {&same.fabric_max.Q_limit, &same.fabric_max.Q_c}) *Q *= 1 - sense * 0.9 * y;
+      for (const Coupling coupling : kCouplings)
+        expect_equal(law_rate(changed, rung, coupling, some_state(), nu, direction),
+                     law_rate(same, rung, coupling, some_state(), nu, direction), 1e-13);
+    }
+    const LawDirection D2 = law_direction(direction_of(Mode::D2, "xyz", false));
+    expect_equal(law_rate(changed, rung, Coupling::energy, some_state(), nu, D2),
+                 law_rate(p, rung, Coupling::energy, some_state(), nu, D2), 1e-13);
+  }
 }
 
 TEST(Law, CorotationIsWaMinusAw) {

@@ -91,6 +91,8 @@ TEST(Parameters, EachNameIsTheFieldThatItSays) {
                                                       {"fabric_rate.Q_limit", &p.fabric_rate.Q_limit},
                                                       {"fabric_rate.Q_c", &p.fabric_rate.Q_c},
                                                       {"fabric_rate.alpha", &p.fabric_rate.alpha},
+                                                      {"lode.stress_ratio", &p.lode.stress_ratio},
+                                                      {"lode.fabric", &p.lode.fabric},
                                                       {"anisotropy.a0", &p.anisotropy.a0},
                                                       {"anisotropy.a1", &p.anisotropy.a1},
                                                       {"anisotropy.a2", &p.anisotropy.a2},

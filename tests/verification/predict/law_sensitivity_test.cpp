@@ -26,6 +26,7 @@ LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
   p.memory = {0.8, 0.7, 2, 24, 200, 9, 1.0, 0.7};
+  p.lode = {0.05, 0.8};  // no row of the paths below stands where s_dev = 0, which has a kink there
   return p;
 }
 
@@ -174,7 +175,7 @@ TEST(Sensitivity, OfEqs17And18IsTheirs) {
   expect_figure("sensitivity.closed_form", off, 2e-8);
 }
 
-// Two runs, each of three segments that may be off by ten tolerances each (hard case O1).
+// Two runs that may be off by ten tolerances each (hard case O1).
 TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
   double off = 0;
   for (const Rung rung : kRungs) {
@@ -187,7 +188,7 @@ TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
       off = std::max({off, std::abs(a.P / b.P - 1), (a.sigma - b.sigma).norm() / b.P, (a.F - b.F).norm()});
     }
   }
-  expect_figure("sensitivity.rows_changed", off, 2 * 3 * 10 * kTight.relative);
+  expect_figure("sensitivity.rows_changed", off, 20 * kTight.relative);
 }
 
 TEST(Sensitivity, EndsWhereTheStateUnjams) {
@@ -205,11 +206,10 @@ TEST(Sensitivity, EndsWhereTheStateUnjams) {
   }
 }
 
-// Only to the bound of the differences: slopes are not in CVODES' error test. With them in it the methods agree to 1e-8.
 TEST(Sensitivity, IsThatOfTheImplicitMethodToo) {
   const LawParameters<double> p = parameters();
   const auto path = reversal();
-  Tolerances tolerances{1e-11, 1e-15};
+  Tolerances tolerances{1e-10, 1e-14};
   const auto slopes = [&](Method method) {
     tolerances.method = method;
     return predict(Rung::memory, p, Coupling::energy, path, state_from_law(p, 0.70), uniform_points(path, 5),
@@ -222,7 +222,7 @@ TEST(Sensitivity, IsThatOfTheImplicitMethodToo) {
     const double scale = std::max(adams[k].state.sigma.norm(), 1e-4 / std::max(1e-2, std::abs(*fields(p)[k])));
     off = std::max(off, (adams[k].state.sigma - bdf[k].state.sigma).norm() / scale);
   }
-  expect_figure("sensitivity.bdf_beside_adams", off, 1e-5);
+  expect_figure("sensitivity.bdf_beside_adams", off, 1e-6);
 }
 
 }  // namespace
