@@ -25,11 +25,11 @@ fi
 
 if [[ $full == no ]]; then
   ./install-packages.sh
-  build release "${options[@]}"
+  build release -DGRAINLAW_LONG=OFF "${options[@]}"
   exec ctest --preset release --parallel "$jobs"
 fi
 ./install-packages.sh --full
-build release "${options[@]}"
+build release -DGRAINLAW_LONG=ON "${options[@]}"
 
 failed=()
 ctest --test-dir build/release --output-on-failure --parallel "$jobs" || failed+=(release)

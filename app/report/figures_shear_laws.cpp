@@ -6,6 +6,7 @@
 #include "app/report/dem_series.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/law_curves.hpp"
+#include "model/evolution.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -16,6 +17,7 @@ struct Quantity20 {
   fit::Estimate fit::ShearFit::*staged;
   double fit::ShearFit::*steady_mean;  ///< null for rates
   ExponentialLaw<double> LawParameters<double>::*law;
+  double LawModuli<double>::*limit;  ///< null for rates
 };
 
 /// The parameters before the coupled fit: the last value that a stage in front of it gave.
@@ -66,10 +68,11 @@ Figure shear_law_figure(const ReportInput& input) {
   using P = LawParameters<double>;
   static const std::array<Quantity20, 4> quantities{
       {{"steady stress ratio {s}_{max} [–]", "stress_ratio_max", &fit::ShearFit::s_max, &fit::ShearFit::s_steady,
-        &P::stress_ratio_max},
-       {"rate {β}_{s} [–]", "stress_rate", &fit::ShearFit::beta_s, nullptr, &P::stress_rate},
-       {"steady fabric {F}_{max} [–]", "fabric_max", &fit::ShearFit::F_max, &fit::ShearFit::F_steady, &P::fabric_max},
-       {"rate {β}_{F} [–]", "fabric_rate", &fit::ShearFit::beta_F, nullptr, &P::fabric_rate}}};
+        &P::stress_ratio_max, &LawModuli<double>::s_max},
+       {"rate {β}_{s} [–]", "stress_rate", &fit::ShearFit::beta_s, nullptr, &P::stress_rate, nullptr},
+       {"steady fabric {F}_{max} [–]", "fabric_max", &fit::ShearFit::F_max, &fit::ShearFit::F_steady, &P::fabric_max,
+        &LawModuli<double>::F_max},
+       {"rate {β}_{F} [–]", "fabric_rate", &fit::ShearFit::beta_F, nullptr, &P::fabric_rate, nullptr}}};
   Figure figure;
   figure.id = "shear-laws";
   figure.title = "Steady values and rates of shear against volume fraction";
@@ -80,7 +83,8 @@ Figure shear_law_figure(const ReportInput& input) {
       "before it, dashed lines the published law.";
   figure.caption = notation(
       "Eq. 20 with {ν}_{c} fixed. Circles: Eqs. 17 and 18 fitted run by run; crosses: mean of the "
-      "steady rows. Dotted: staged fit of Eq. 20. Solid: after the coupled fit of Eq. 16. Dashed: Table 3 of the "
+      "steady rows. Dotted: staged fit of Eq. 20. Solid: after the coupled fit of Eq. 16, of D2 and, where D3 was "
+      "fitted, of D3 by its Lode angle. Dashed: Table 3 of the "
       "paper.");
   figure.sources = {"calibration.json", "parameters.json"};
   figure.columns = 2;
@@ -97,6 +101,9 @@ Figure shear_law_figure(const ReportInput& input) {
     from = calibration.nu_min;
     to = calibration.nu_max;
   }
+  const LawDirection D3 = law_direction(direction_of(Mode::D3, "xyz", false));
+  const bool sheared_by_D3 = std::any_of(calibration.shear.begin(), calibration.shear.end(),
+                                         [](const fit::ShearFit& fit) { return fit.mode == Mode::D3; });
   for (const Quantity20& quantity : quantities) {
     Panel panel;
     panel.x.label = notation("volume fraction {ν} [–]");
@@ -120,6 +127,11 @@ Figure shear_law_figure(const ReportInput& input) {
     }
     add("Eq. 20, staged", staged, Colour::blue, Line::dotted);
     add("Eq. 20, final", calibration.parameters, Colour::vermillion, Line::solid);
+    if (quantity.limit != nullptr && sheared_by_D3) {
+      const P& p = calibration.parameters;
+      panel.series.push_back(curve(plain("final, D3"), Colour::green, Line::solid, from, to,
+                                   [&](double nu) { return along(moduli_at(p, nu), p.lode, D3).*quantity.limit; }));
+    }
     figure.panels.push_back(panel);
   }
   return figure;

@@ -121,7 +121,7 @@ price_beside_lammps() {
       -v ours="$(jq '[.rounds[].seconds] | add' "$out/target-$wanted/plan.json")" -v cores="$(nproc)" \
       'BEGIN { print (a > 0 && b > 0 && ours > 0) ? steps / 2e6 * (1 / a + 1 / b) / (ours * cores) : "missing" }')
     figure "wanted.$wanted.lammps_seconds_over_ours.one_packing" "$price" ">=50"
-    figure "wanted.$wanted.lammps_seconds_over_ours.three_packings" "$(awk -v p="$price" 'BEGIN { print p > 0 ? 3 * p : "missing" }')" stated
+    figure "wanted.$wanted.lammps_seconds_over_ours.three_packings" "$(awk -v p="$price" 'BEGIN { print (p > 0 ? 3 * p : "missing") }')" stated
   done
 }
 

@@ -13,7 +13,7 @@ case $#:${1:-} in
 esac
 
 ./install-packages.sh >&2
-cmake --preset release --log-level=WARNING >&2
+cmake --preset release --log-level=WARNING -DGRAINLAW_LONG=ON >&2
 cmake --build build/release --parallel "$(nproc)" >&2
 bin=build/release/bin
 out=$PWD/build/acceptance
