@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <random>
 #include <string>
+#include <thread>
 
 #include "fit/calibrate.hpp"
 #include "fit/density_fit.hpp"
@@ -227,16 +229,28 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   calibration.max_step = 1e-2;
   calibration.stiffness_window = 0.04;
   const LawParameters<double> target = fit::calibrate(clean, calibration, {}).parameters;
+  std::vector<fit::Calibration> found(static_cast<std::size_t>(study.sets));
+  std::atomic<int> next = 0;
+  const auto work = [&] {
+    for (int k = next++; k < study.sets; k = next++) {
+      std::vector<TestRecord> tests = clean;
+      RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation,
+                     study.packing_scatter);
+      for (TestRecord& test : tests) noise.add_to(test);
+      fit::Calibration c = fit::calibrate(tests, calibration, {});
+      found[static_cast<std::size_t>(k)].estimates = std::move(c.estimates);
+    }
+  };
+  {
+    std::vector<std::jthread> team;
+    for (unsigned t = 0; t < std::thread::hardware_concurrency(); ++t) team.emplace_back(work);
+  }
   Coverage coverage;
-  for (int k = 0; k < study.sets; ++k) {
-    std::vector<TestRecord> tests = clean;
-    RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation, study.packing_scatter);
-    for (TestRecord& test : tests) noise.add_to(test);
-    const fit::Calibration found = fit::calibrate(tests, calibration, {});
+  for (const fit::Calibration& c : found) {
     for (std::size_t i = 0; i < kParameterCount; ++i) {
       const std::string name = parameter_table()[i].name;
       if (name == "shear.nu_c" || name == "memory.m" || name == "anisotropy.a0") continue;  // not fitted
-      coverage.add({name, found.estimates[i]}, target);
+      coverage.add({name, c.estimates[i]}, target);
     }
   }
   return coverage;
