@@ -26,7 +26,7 @@ using OdeScale = std::function<void(double t, const double* y, double* scale)>;
 /// Writes the rate (df/dy) s + df/dp_k at (t, y) of the sensitivity s = dy/dp_k. May throw.
 using OdeSensitivityRate = std::function<void(std::size_t k, double t, const double* y, const double* s, double* rate)>;
 
-/// dy/dp_k, carried along beside y, each to ten times the relative tolerance of y (and no less than 1e-10) of
+/// dy/dp_k, carried along beside y, each to five times the relative tolerance of y (and no less than 1e-10) of
 /// itself, or of typical y over the magnitude of p_k where it is less than that.
 struct OdeSensitivities {
   std::vector<double> magnitudes;  ///< of each p_k, positive
