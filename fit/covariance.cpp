@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kNullPart = 1e-4;      // component along a null direction beyond which a parameter is not determined
 constexpr double kCarriedByOne = 0.05;  // share of a parameter's variance along directions that one packing carries
+// Second derivative of the cost over that without curvature; outside, the misfits alone make a valley or a hill of it.
+constexpr double kFlattest = 0.1, kSteepest = 10;
 
 std::vector<Eigen::Index> columns_of(const std::vector<bool>& free) {
   std::vector<Eigen::Index> columns;
@@ -21,14 +23,23 @@ std::vector<Eigen::Index> columns_of(const std::vector<bool>& free) {
   return columns;
 }
 
-/// H^+ = L L^T for H = J^T J, by the singular values of J with its columns scaled to one.
+/// H^+ = L L^T for H = J^T J, by the singular values of J with its columns scaled to one, and A^+ = B L^T = L M^-1 L^T with
+/// M = 1 + L^T S L, in these coordinates the Hessian of the cost.
 struct Factor {
-  Eigen::MatrixXd L;
+  Eigen::MatrixXd L, B;
   std::vector<bool> identified;
   double condition = 0;
 };
 
-Factor factor_of(const Eigen::MatrixXd& J) {
+/// M^-1 with its eigenvalues, positive at a minimum, held within bounds.
+Eigen::MatrixXd inverse_hessian(const Eigen::MatrixXd& M) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(M);
+  const Eigen::MatrixXd& W = solver.eigenvectors();
+  return W * solver.eigenvalues().cwiseMax(kFlattest).cwiseMin(kSteepest).cwiseInverse().asDiagonal() * W.transpose();
+}
+
+/// `S` of the columns of `J`, or empty.
+Factor factor_of(const Eigen::MatrixXd& J, const Eigen::MatrixXd& S) {
   const Eigen::Index p = J.cols();
   Factor factor;
   factor.identified.assign(static_cast<std::size_t>(p), true);
@@ -48,8 +59,18 @@ Factor factor_of(const Eigen::MatrixXd& J) {
     const double null_part = std::sqrt(std::max(0.0, 1 - V.row(k).squaredNorm()));
     if (null_part > kNullPart) factor.identified[static_cast<std::size_t>(k)] = false;
   }
-  factor.L = inverse_norm.asDiagonal() * V * sigma.head(rank).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd& L = factor.L = inverse_norm.asDiagonal() * V * sigma.head(rank).cwiseInverse().asDiagonal();
+  factor.B = L;
+  if (S.size() > 0 && rank > 0)
+    factor.B = L * inverse_hessian(Eigen::MatrixXd::Identity(rank, rank) + L.transpose() * S * L);
   return factor;
+}
+
+/// Of the free parameters.
+Factor factor_of(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& curvature,
+                 const std::vector<Eigen::Index>& columns) {
+  return factor_of(jacobian(Eigen::all, columns),
+                   curvature.size() > 0 ? Eigen::MatrixXd(curvature(columns, columns)) : Eigen::MatrixXd());
 }
 
 /// What a packing shows in the coordinates of L.
@@ -78,7 +99,7 @@ Packing packing_of(const Eigen::MatrixXd& J_L, const Eigen::VectorXd& misfit) {
   return packing;
 }
 
-/// Of the variance of u^T g, u a row of L: g_cd = delta_cd a_c^T Q_c a_c - (Q_c a_c)^T (Q_d a_d), a_c = power_c u.
+/// Of the variance of u^T g, u a row of B: g_cd = delta_cd a_c^T Q_c a_c - (Q_c a_c)^T (Q_d a_d), a_c = power_c u.
 double satterthwaite(const std::map<int, Packing>& packings, const Eigen::VectorXd& u) {
   const auto n = static_cast<Eigen::Index>(packings.size());
   Eigen::MatrixXd q(u.size(), n);
@@ -98,7 +119,8 @@ double satterthwaite(const std::map<int, Packing>& packings, const Eigen::Vector
 }  // namespace
 
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
-                                     const std::vector<int>& cluster, const std::vector<bool>& free) {
+                                     const std::vector<int>& cluster, const std::vector<bool>& free,
+                                     const Eigen::MatrixXd& curvature) {
   const auto all = static_cast<std::size_t>(jacobian.cols());
   const int packing_count = cluster.empty() ? 0 : 1 + *std::max_element(cluster.begin(), cluster.end());
   ClusterCovariance result;
@@ -109,8 +131,8 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
   const std::vector<Eigen::Index> columns = columns_of(free);
   if (columns.empty()) return result;
   const Eigen::MatrixXd J = jacobian(Eigen::all, columns);
-  const Factor factor = factor_of(J);
-  const Eigen::MatrixXd& L = factor.L;
+  const Factor factor = factor_of(jacobian, curvature, columns);
+  const Eigen::MatrixXd &L = factor.L, &B = factor.B;
   result.condition = factor.condition;
   if (L.cols() == 0) {  // nothing that was measured moves with any parameter
     for (const Eigen::Index k : columns) result.identified[static_cast<std::size_t>(k)] = false;
@@ -123,36 +145,37 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
   Eigen::VectorXd carried_by_one = Eigen::VectorXd::Zero(L.rows());
   for (const auto& [id, rows] : rows_of) {
     const Packing& packing = packings[id] = packing_of(J(rows, Eigen::all) * L, misfit(rows));
-    carried_by_one += (L * packing.alone).rowwise().squaredNorm();
+    carried_by_one += (B * packing.alone).rowwise().squaredNorm();
   }
   for (Eigen::Index k = 0; k < L.rows(); ++k) {
     const Eigen::Index whole = columns[static_cast<std::size_t>(k)];
     const auto at = static_cast<std::size_t>(whole);
     result.identified[at] = factor.identified[static_cast<std::size_t>(k)];
-    result.has_error[at] = result.identified[at] && carried_by_one(k) <= kCarriedByOne * L.row(k).squaredNorm();
+    result.has_error[at] = result.identified[at] && carried_by_one(k) <= kCarriedByOne * B.row(k).squaredNorm();
     if (!result.has_error[at]) continue;
-    for (const auto& [id, packing] : packings) result.influence(whole, id) = -L.row(k).dot(packing.g);
-    result.degrees_of_freedom(whole) = satterthwaite(packings, L.row(k));
+    for (const auto& [id, packing] : packings) result.influence(whole, id) = -B.row(k).dot(packing.g);
+    result.degrees_of_freedom(whole) = satterthwaite(packings, B.row(k));
   }
   return result;
 }
 
-Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free,
-                         const Eigen::MatrixXd& change) {
+Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free, const Eigen::MatrixXd& change,
+                         const Eigen::MatrixXd& curvature) {
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(jacobian.cols(), change.cols());
   const std::vector<Eigen::Index> columns = columns_of(free);
   if (columns.empty()) return moved;
-  const Eigen::MatrixXd J = jacobian(Eigen::all, columns);
-  const Eigen::MatrixXd L = factor_of(J).L;
-  moved(columns, Eigen::all) = -L * (L.transpose() * (J.transpose() * change));
+  const Factor factor = factor_of(jacobian, curvature, columns);
+  moved(columns, Eigen::all) = -factor.B * (factor.L.transpose() * change(columns, Eigen::all));
   return moved;
 }
 
-Eigen::VectorXd naive_variance(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free) {
+Eigen::VectorXd naive_variance(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free,
+                               const Eigen::MatrixXd& curvature) {
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(jacobian.cols());
   const std::vector<Eigen::Index> columns = columns_of(free);
   if (columns.empty()) return variance;
-  variance(columns) = factor_of(jacobian(Eigen::all, columns)).L.rowwise().squaredNorm();
+  const Factor factor = factor_of(jacobian, curvature, columns);
+  variance(columns) = factor.B.cwiseProduct(factor.L).rowwise().sum();
   return variance;
 }
 

@@ -2,7 +2,8 @@
 // Standard errors of a least-squares fit of rows that are not independent. Packings are the unit of chance: rows of one run
 // are correlated, and runs of one packing share the packing (the naive (J^T J)^-1 covers a third of what it promises).
 // Cluster-robust sandwich over packings c, J and r weighted, H = J^T J:
-//   V = sum_c psi_c psi_c^T,   psi_c = -H^+ J_c^T (1 - J_c H^+ J_c^T)^(-1/2) r_c
+//   V = sum_c psi_c psi_c^T,   psi_c = -A^+ J_c^T (1 - J_c H^+ J_c^T)^(-1/2) r_c
+// A = H + S is the Hessian of the cost, S what the misfits of a model that does not hold exactly add to it (curvature.hpp).
 // psi_c, the influence of packing c, is what it moved the parameters by. The power of the leverage undoes what a packing's
 // own share in the fit takes from its residual ("CR2"). For G packings that share alike it is the factor G/(G-1) in V,
 // which then is the variance of the mean of G fits, one to each packing; where a parameter rests on few of many packings it
@@ -34,15 +35,19 @@ inline constexpr double kNullSingularValue = 1e-7;  ///< relative to the largest
 inline constexpr double kLargestLeverage = 0.9;     ///< of a packing on a direction; beyond, its residual says nothing
 
 /// `jacobian` and `misfit` weighted, rows of zero weight left out; `free` false holds a parameter (at a bound) fixed.
-/// `cluster` of each row: its packing, numbered from 0.
+/// `cluster` of each row: its packing, numbered from 0. `curvature`: S, parameters x parameters; empty: none.
 ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& misfit,
-                                     const std::vector<int>& cluster, const std::vector<bool>& free);
+                                     const std::vector<int>& cluster, const std::vector<bool>& free,
+                                     const Eigen::MatrixXd& curvature = {});
 
-/// By how much the free parameters move when the weighted misfits change by the columns of `change`: -H^+ J^T change.
-/// Parameters x columns.
-Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free, const Eigen::MatrixXd& change);
+/// By how much the free parameters move when the gradient of the cost, J^T misfit, changes by the columns of `change`:
+/// -A^+ change. Parameters x columns.
+Eigen::MatrixXd response(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free, const Eigen::MatrixXd& change,
+                         const Eigen::MatrixXd& curvature = {});
 
-/// Diagonal of H^+: variances were rows independent and of unit variance. Zero for parameters that are not free.
-Eigen::VectorXd naive_variance(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free);
+/// Diagonal of A^+: without curvature, variances were rows independent and of unit variance; 1/A^+_kk is the second
+/// derivative of the profile of the cost over parameter k. Zero for parameters that are not free.
+Eigen::VectorXd naive_variance(const Eigen::MatrixXd& jacobian, const std::vector<bool>& free,
+                               const Eigen::MatrixXd& curvature = {});
 
 }  // namespace grainlaw::fit

@@ -78,8 +78,7 @@ Eigen::VectorXd slope_of(const std::vector<DensitySeries>& series, const Slope& 
 
 /// Of a fit of Eq. (11) or (14), whose third parameter is nu_c.
 void inherit_nu_c(const StageFit& first, const Eigen::VectorXd& slope, StageFit& second) {
-  const double degrees_of_freedom = first.stage.estimates[2].estimate.degrees_of_freedom;
-  inherit_error(slope, first.influence.row(2), Eigen::VectorXd::Constant(1, degrees_of_freedom), second);
+  inherit_error(slope, first.influence.row(2), first.stage.estimates[2].estimate.degrees_of_freedom, second);
 }
 
 const char* const kMoreDensities = "the rows do not determine it; test more densities";

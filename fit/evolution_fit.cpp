@@ -160,7 +160,7 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
         [&](const LawParameters<double>& given) {
           return evolution_problem(trajectories, given, held, options).blocks;
         },
-        fit);
+        options.threads, fit);
     for (const ShearQuantity& quantity : kShearQuantities) settle_constant_law(fit, quantity.name);
     for (const Pair& pair : kPairs) judge_pair(fit, trajectories, law, pair, options);
     if (anisotropy) judge_coupling(fit, coupling, remedy);

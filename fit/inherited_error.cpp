@@ -13,26 +13,50 @@ constexpr double kStep = 1e-6;  // of a parameter; the quotient's own error is a
 
 bool has_error(const Eigen::MatrixXd& influence, Eigen::Index k) { return influence.row(k).squaredNorm() > 0; }
 
-/// Of the parameters `index` that have an error: d misfit/d parameter of all rows at the stage's solution.
-Eigen::MatrixXd slopes(const std::vector<std::size_t>& index, const LawParameters<double>& law,
-                       const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
-                       const Solution& solution) {
-  Eigen::MatrixXd slope(solution.misfit.size(), static_cast<Eigen::Index>(index.size()));
-  for (std::size_t k = 0; k < index.size(); ++k) {
+/// d(J^T W^2 misfit) at the stage's solution when the parameters `index` of the law move by each column of `influence`.
+Eigen::MatrixXd gradient_changes(
+    const std::vector<std::size_t>& index, const Eigen::MatrixXd& influence, const LawParameters<double>& law,
+    const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at, int threads,
+    const Solution& solution) {
+  const Eigen::Index rows = solution.misfit.size(), n = solution.x.size();
+  const Eigen::VectorXd w2 = solution.weight.cwiseAbs2();
+  const Eigen::VectorXd here = solution.jacobian.transpose() * w2.cwiseProduct(solution.misfit);
+  Eigen::MatrixXd change = Eigen::MatrixXd::Zero(n, influence.cols());
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, n);
+  Eigen::VectorXd misfit(rows);
+  for (Eigen::Index c = 0; c < influence.cols(); ++c) {
     LawParameters<double> moved = law;
-    double& value = *fields(moved)[index[k]];
-    const double before = value;
-    value -= kStep * std::max(std::abs(value), 1e-3);  // downwards: a jamming density then leaves the data further away
-    Eigen::VectorXd misfit(solution.misfit.size());
-    Eigen::Index first = 0;
-    for (const ResidualBlock& block : blocks_at(moved)) {
-      if (!block.evaluate(solution.x.data(), misfit.data() + first, nullptr))
-        misfit.segment(first, block.rows()) = solution.misfit.segment(first, block.rows());
-      first += block.rows();
-    }
-    slope.col(static_cast<Eigen::Index>(k)) = (misfit - solution.misfit) / (value - before);
+    const auto field = fields(moved);
+    double largest = 0;  // relative move
+    for (std::size_t k = 0; k < index.size(); ++k)
+      largest = std::max(
+          largest, std::abs(influence(static_cast<Eigen::Index>(k), c)) / std::max(std::abs(*field[index[k]]), 1e-3));
+    if (!(largest > 0)) continue;
+    const double part = kStep / largest;
+    for (std::size_t k = 0; k < index.size(); ++k)
+      *field[index[k]] += part * influence(static_cast<Eigen::Index>(k), c);
+    if (evaluate(blocks_at(moved), solution.x, threads, misfit.data(), jacobian.data()))
+      change.col(c) = (jacobian.transpose() * w2.cwiseProduct(misfit) - here) / part;
   }
-  return slope;
+  return change;
+}
+
+/// Adds the response to the changes of the gradient (parameters x packings) to the errors of `second`. Degrees of freedom at
+/// most the least of `given`, those of the parameters that caused them.
+void add_response(const Eigen::MatrixXd& gradient_change, const Eigen::VectorXd& given, StageFit& second) {
+  const Solution& solution = second.solution;
+  std::vector<bool> free(solution.at_bound);
+  free.flip();
+  const Eigen::MatrixXd moved =
+      response(solution.weight.asDiagonal() * solution.jacobian, free, gradient_change, solution.curvature);
+  widen(second.influence, moved.cols());
+  for (Eigen::Index i = 0; i < second.influence.rows(); ++i) {
+    Estimate& estimate = second.stage.estimates[static_cast<std::size_t>(i)].estimate;
+    if (!std::isfinite(estimate.standard_error)) continue;
+    second.influence.row(i).head(moved.cols()) += moved.row(i);
+    estimate.standard_error = second.influence.row(i).norm();
+    estimate.degrees_of_freedom = std::min(estimate.degrees_of_freedom, given.minCoeff());
+  }
 }
 
 }  // namespace
@@ -49,30 +73,17 @@ void widen(Eigen::MatrixXd& influence, Eigen::Index packings) {
   influence.rightCols(packings - before).setZero();
 }
 
-void inherit_error(const Eigen::MatrixXd& slope, const Eigen::MatrixXd& influence,
-                   const Eigen::VectorXd& degrees_of_freedom, StageFit& second) {
+void inherit_error(const Eigen::VectorXd& slope, const Eigen::RowVectorXd& influence, double degrees_of_freedom,
+                   StageFit& second) {
   const Solution& solution = second.solution;
   if (!solution.defined || influence.squaredNorm() == 0) return;
-  std::vector<bool> free(solution.at_bound);
-  free.flip();
-  const auto& w = solution.weight;
-  const Eigen::MatrixXd moved = response(w.asDiagonal() * solution.jacobian, free, w.asDiagonal() * slope) * influence;
-  widen(second.influence, influence.cols());
-  for (Eigen::Index i = 0; i < second.influence.rows(); ++i) {
-    Estimate& estimate = second.stage.estimates[static_cast<std::size_t>(i)].estimate;
-    if (!std::isfinite(estimate.standard_error)) continue;
-    second.influence.row(i).head(influence.cols()) += moved.row(i);
-    estimate.standard_error = second.influence.row(i).norm();
-    for (Eigen::Index k = 0; k < influence.rows(); ++k) {
-      if (has_error(influence, k))
-        estimate.degrees_of_freedom = std::min(estimate.degrees_of_freedom, degrees_of_freedom(k));
-    }
-  }
+  add_response(solution.jacobian.transpose() * solution.weight.cwiseAbs2().cwiseProduct(slope) * influence,
+               Eigen::VectorXd::Constant(1, degrees_of_freedom), second);
 }
 
 void inherit_error(const std::vector<std::string>& groups, const FoundErrors& found, const LawParameters<double>& law,
                    const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
-                   StageFit& second) {
+                   int threads, StageFit& second) {
   if (!second.solution.defined || found.influence.cols() == 0) return;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
@@ -81,8 +92,8 @@ void inherit_error(const std::vector<std::string>& groups, const FoundErrors& fo
     if (given && has_error(found.influence, static_cast<Eigen::Index>(i))) index.push_back(i);
   }
   if (index.empty()) return;
-  inherit_error(slopes(index, law, blocks_at, second.solution), found.influence(index, Eigen::all),
-                found.degrees_of_freedom(index), second);
+  add_response(gradient_changes(index, found.influence(index, Eigen::all), law, blocks_at, threads, second.solution),
+               found.degrees_of_freedom(index), second);
 }
 
 }  // namespace grainlaw::fit

@@ -8,11 +8,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include <thread>
 
 #include "model/error.hpp"
 #include "model/parameters.hpp"
@@ -32,10 +30,10 @@ class Blocks : public ceres::CostFunction {
  public:
   /// Weighted misfits are divided by `unit`, so that the solver's tolerances are relative.
   Blocks(const std::vector<ResidualBlock>& blocks, Eigen::VectorXd scale, double unit, int threads)
-      : blocks_(blocks), scale_(std::move(scale)), unit_(unit), threads_(threads) {
-    for (const ResidualBlock& block : blocks_) {
-      first_row_.push_back(rows_);
-      rows_ += block.rows();
+      : blocks_(blocks), scale_(std::move(scale)), unit_(unit), threads_(threads), rows_(row_count(blocks)) {
+    for (int row = 0; const ResidualBlock& block : blocks_) {
+      first_row_.push_back(row);
+      row += block.rows();
     }
     set_num_residuals(rows_);
     mutable_parameter_block_sizes()->push_back(static_cast<int>(scale_.size()));
@@ -62,26 +60,7 @@ class Blocks : public ceres::CostFunction {
 
   /// Unweighted model - data and d/dx.
   bool misfit(const Eigen::VectorXd& x, double* values, double* jacobian) const {
-    std::fill(values, values + rows_, std::nan(""));
-    std::atomic<std::size_t> next = 0;
-    std::atomic<bool> good = true;
-    const auto work = [&] {
-      for (std::size_t b = next++; b < blocks_.size(); b = next++) {
-        double* J = jacobian == nullptr ? nullptr : jacobian + static_cast<std::ptrdiff_t>(first_row_[b]) * x.size();
-        if (!blocks_[b].evaluate(x.data(), values + first_row_[b], J)) good = false;
-      }
-    };
-    const int extra = std::min<int>(threads_, static_cast<int>(blocks_.size())) - 1;
-    {
-      std::vector<std::jthread> team;
-      for (int t = 0; t < extra; ++t) team.emplace_back(work);
-      work();
-    }
-    if (!good) return false;
-    const auto finite = [](const double* from, std::ptrdiff_t n) {
-      return std::all_of(from, from + n, [](double v) { return std::isfinite(v); });
-    };
-    return finite(values, rows_) && (jacobian == nullptr || finite(jacobian, rows_ * x.size()));
+    return fit::evaluate(blocks_, x, threads_, values, jacobian);
   }
 
   /// The first block that has no finite value at `x`, for messages.
@@ -102,7 +81,7 @@ class Blocks : public ceres::CostFunction {
   Eigen::VectorXd scale_;
   double unit_;
   int threads_;
-  int rows_ = 0;
+  int rows_;
   std::vector<int> first_row_;
 };
 
@@ -240,12 +219,10 @@ Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<R
     scale(k) = p.scale;
     z(k) = std::clamp(p.start, p.lower, p.upper) / p.scale;
   }
-  int rows = 0;
   for (const ResidualBlock& block : blocks) {
-    rows += block.rows();
     solution.cluster.insert(solution.cluster.end(), static_cast<std::size_t>(block.rows()), block.cluster);
   }
-  solution.weight.resize(rows);
+  solution.weight.resize(row_count(blocks));
   for (Eigen::Index row = 0; const ResidualBlock& block : blocks) {
     solution.weight.segment(row, block.rows()) = block.weight;
     row += block.rows();

@@ -28,6 +28,7 @@ struct Solution {
   Eigen::VectorXd misfit;      ///< model - data of all rows of all blocks in order, unweighted
   Eigen::VectorXd weight;      ///< of these rows
   Eigen::MatrixXd jacobian;    ///< d misfit/dx
+  Eigen::MatrixXd curvature;   ///< fit/curvature.hpp, set by fit_stage
   std::vector<int> cluster;    ///< of these rows
   double initial_cost = 0, final_cost = 0;
   int iterations = 0;

@@ -51,7 +51,8 @@ StageFit fit_lode(const std::vector<Trajectory>& others, LawParameters<double>& 
   law.lode = {fit.solution.x(0), fit.solution.x(1)};
   inherit_error(
       kGivenLaws, found, law,
-      [&](const LawParameters<double>& given) { return lode_problem(others, given, options).blocks; }, fit);
+      [&](const LawParameters<double>& given) { return lode_problem(others, given, options).blocks; }, options.threads,
+      fit);
   return fit;
 }
 

@@ -122,7 +122,7 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
         [&](const LawParameters<double>& given) {
           return memory_problem(trajectories, given, volumetric, options).blocks;
         },
-        fit);
+        options.threads, fit);
     const auto field = fields(law);
     for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
       const std::string& name = problem.parameters[k].name;

@@ -72,7 +72,7 @@ class ProfiledCost {
   std::string name_;
 };
 
-/// V_kk/(H^+)_kk of a parameter, and what the stage's parameters have on average.
+/// V_kk/(A^+)_kk of a parameter, and what the stage's parameters have on average.
 struct Inflation {
   Eigen::VectorXd own;  // NaN without an error
   double mean = kUndefined;
@@ -83,7 +83,7 @@ Inflation inflation_of(const StageFit& fit) {
   const Solution& s = fit.solution;
   std::vector<bool> free(s.at_bound);
   free.flip();
-  const Eigen::VectorXd naive = naive_variance(s.weight.asDiagonal() * s.jacobian, free);
+  const Eigen::VectorXd naive = naive_variance(s.weight.asDiagonal() * s.jacobian, free, s.curvature);
   Inflation inflation{Eigen::VectorXd::Constant(naive.size(), kUndefined), kUndefined, kUndefined};
   double sum = 0;
   int count = 0;

@@ -29,6 +29,14 @@ struct ResidualBlock {
   int rows() const { return static_cast<int>(weight.size()); }
 };
 
+/// Rows of all blocks.
+int row_count(const std::vector<ResidualBlock>& blocks);
+
+/// model - data of all rows of all blocks in order at the parameters `x`, unweighted, and its row-major Jacobian unless null.
+/// Each block by one of `threads`, into its own rows. False when the model is not defined at `x` or something is not finite.
+bool evaluate(const std::vector<ResidualBlock>& blocks, const Eigen::VectorXd& x, int threads, double* misfit,
+              double* jacobian);
+
 /// Values and Jacobian of `functor(const T* x, T* misfit) -> bool` by forward differentiation. `Jet` is a dual number
 /// with at least `parameters` partial derivatives: Jet(value, k), .a and .v.
 template <class Jet, class Functor>

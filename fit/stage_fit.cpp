@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "fit/covariance.hpp"
+#include "fit/curvature.hpp"
 #include "fit/many_starts.hpp"
 #include "fit/robust.hpp"
 #include "model/error.hpp"
@@ -67,7 +68,7 @@ ClusterCovariance covariance_of(const Solution& solution) {
   std::vector<bool> free(solution.at_bound);
   free.flip();
   return cluster_covariance(w.asDiagonal() * solution.jacobian(rows, Eigen::all), w.cwiseProduct(solution.misfit(rows)),
-                            cluster, free);
+                            cluster, free, solution.curvature);
 }
 
 std::size_t position(const Stage& stage, const std::string& name) {
@@ -98,6 +99,7 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
                                       : solve(from, blocks, threads, name, control);
   };
   fit.solution = solve_from_many(parameters, search.starts, solve_one, fit.stage.starts);
+  if (fit.solution.defined) fit.solution.curvature = curvature(parameters, blocks, fit.solution, threads);
   const Solution& solution = fit.solution;
   Stage& stage = fit.stage;
   stage.name = name;

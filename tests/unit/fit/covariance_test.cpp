@@ -85,17 +85,30 @@ TEST(Covariance, UnequalPackingsCountForFewer) {
 }
 
 TEST(Covariance, ResponseIsThatOfTheNormalEquations) {
-  Eigen::MatrixXd J(5, 3), change(5, 2);
+  Eigen::MatrixXd J(5, 3), change(3, 2), S(3, 3);
   J << 1, 2, 0, 0, 1, 3, 2, 0, 1, 1, 1, 1, 4, 0, 2;
-  change << 1, 0, -1, 2, 0.5, 1, 2, -2, 0, 3;
-  const Eigen::MatrixXd all = response(J, {true, true, true}, change);
-  EXPECT_NEAR((all + (J.transpose() * J).inverse() * (J.transpose() * change)).norm(), 0, 1e-12);
-  const Eigen::MatrixXd J2 = J(Eigen::all, std::vector<int>{0, 2});
-  const Eigen::MatrixXd held = response(J, {true, false, true}, change);
-  EXPECT_NEAR(
-      (held(std::vector<int>{0, 2}, Eigen::all) + (J2.transpose() * J2).inverse() * (J2.transpose() * change)).norm(),
-      0, 1e-12);
-  EXPECT_EQ(held.row(1).norm(), 0);
+  change << 1, 0, -1, 2, 0.5, 1;
+  S << 1, 0.5, 0, 0.5, -0.2, 0.1, 0, 0.1, 2;
+  const std::vector<int> two{0, 2};
+  for (const Eigen::MatrixXd& curvature : {Eigen::MatrixXd(), S}) {
+    const Eigen::MatrixXd A = J.transpose() * J + (curvature.size() > 0 ? S : Eigen::MatrixXd::Zero(3, 3).eval());
+    const Eigen::MatrixXd all = response(J, {true, true, true}, change, curvature);
+    EXPECT_NEAR((all + A.inverse() * change).norm(), 0, 1e-12);
+    const Eigen::MatrixXd held = response(J, {true, false, true}, change, curvature);
+    EXPECT_NEAR((held(two, Eigen::all) + A(two, two).inverse() * change(two, Eigen::all)).norm(), 0, 1e-12);
+    EXPECT_EQ(held.row(1).norm(), 0);
+    EXPECT_NEAR((naive_variance(J, {true, true, true}, curvature) - A.inverse().diagonal()).norm(), 0, 1e-12);
+  }
+}
+
+// A cost that curves downwards is not at a minimum: its valley is taken as flat, not as a hill.
+TEST(Covariance, CurvatureNeverTurnsAValleyIntoAHill) {
+  const Mean m = mean_of({1, 1, 4}, 1);
+  const double naive = naive_variance(m.J, {true})(0);
+  for (const double S : {-2.9, -3.0, -7.0}) {
+    const double variance = naive_variance(m.J, {true}, Eigen::MatrixXd::Constant(1, 1, S))(0);
+    EXPECT_NEAR(variance, 10 * naive, 1e-9) << S;
+  }
 }
 
 TEST(Covariance, OneRunHasNoError) {

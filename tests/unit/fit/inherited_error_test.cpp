@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kRows = 20;
 constexpr double kSlope = 3;  // of the second stage's misfit in the first one's parameter
-const Eigen::VectorXd kFour = Eigen::VectorXd::Constant(1, 4);  // degrees of freedom of five packings
+constexpr double kFour = 4;   // degrees of freedom of five packings
 
 /// Blocks of x[0] + shift - value, one for each run, whose rows all hold its value.
 std::vector<ResidualBlock> blocks_of(const std::vector<double>& values, double shift) {
@@ -69,7 +69,7 @@ TEST(InheritedError, TheFewerPackingsDecide) {
   const StageFit a = mean_of("a", {1.0, 1.4, 0.7}, 0);  // the second stage has five
   StageFit b = mean_of("b", {2.0, 2.1, 1.8, 2.2, 1.9}, kSlope * a.solution.x(0));
   const Eigen::RowVectorXd own = b.influence.row(0);
-  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, Eigen::VectorXd::Constant(1, 2), b);
+  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, 2, b);
   EXPECT_EQ(b.stage.estimates[0].estimate.degrees_of_freedom, 2);
   Eigen::RowVectorXd expected = own;
   expected.head(3) -= kSlope * a.influence.row(0);
@@ -90,13 +90,57 @@ TEST(InheritedError, SlopesOfALawAreFoundByDifferences) {
   found.degrees_of_freedom(D) = 4;
   inherit_error(
       {"overlap"}, found, law,
-      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, by_difference);
+      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, 1, by_difference);
   inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, kFour, by_slope);
   EXPECT_NEAR((by_difference.influence - by_slope.influence).norm(), 0, 1e-8 * by_slope.influence.norm());
   inherit_error(
       {"fabric"}, found, law,
-      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, by_slope);
+      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, 1, by_slope);
   EXPECT_NEAR((by_difference.influence - by_slope.influence).norm(), 0, 1e-8 * by_slope.influence.norm()) << "no error";
+}
+
+/// D x0 - value and x0 - 1, one pair for each packing: D moves the Jacobian, too.
+std::vector<ResidualBlock> product_blocks(const std::vector<double>& values, double D) {
+  std::vector<ResidualBlock> blocks;
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    ResidualBlock block;
+    block.test = "run";
+    block.cluster = static_cast<int>(c);
+    block.weight = Eigen::VectorXd::Ones(2);
+    block.channels.push_back({"value", 0, 2, 0, 3});
+    block.evaluate = [D, value = values[c]](const double* x, double* misfit, double* jacobian) {
+      misfit[0] = D * x[0] - value;
+      misfit[1] = x[0] - 1;
+      if (jacobian != nullptr) jacobian[0] = D, jacobian[1] = 1;
+      return true;
+    };
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+// b = (D y + 1)/(D^2 + 1) with y the mean of the values, D the mean of x, each known by its packings:
+//   b_c = db/dD D_c + db/dy y_c,   db/dD = y/(D^2 + 1) - 2 D b/(D^2 + 1)
+TEST(InheritedError, TheWholeChangeOfTheGradientCounts) {
+  const std::vector<double> x{1.0, 1.4, 0.7, 1.1, 0.9}, y{4.8, 3.9, 5.9, 4.6, 5.4};
+  const StageFit a = mean_of("overlap.D", x, 0);
+  LawParameters<double> law = start_parameters();
+  const double D = law.overlap_D = a.solution.x(0);
+  StageFit b = fit_stage("b", "", {{"b", 0.5, -100, 100, 1}}, product_blocks(y, D), "", 1, {});
+  FoundErrors found = no_errors();
+  widen(found.influence, 5);
+  const auto row = static_cast<Eigen::Index>(parameter_index("overlap.D"));
+  found.influence.row(row) = a.influence.row(0);
+  found.degrees_of_freedom(row) = 4;
+  inherit_error(
+      {"overlap"}, found, law, [&](const LawParameters<double>& given) { return product_blocks(y, given.overlap_D); },
+      1, b);
+  const double value = b.solution.x(0), mean_y = 4.92, square = D * D + 1, by_D = (mean_y - 2 * D * value) / square;
+  EXPECT_NEAR(value, (D * mean_y + 1) / square, 1e-9);
+  double expected = 0;
+  for (std::size_t c = 0; c < x.size(); ++c)
+    expected += std::pow(by_D * (x[c] - D) + D / square * (y[c] - mean_y), 2) / (5 * 4);
+  EXPECT_NEAR(variance(b), expected, 1e-5 * expected);
 }
 
 }  // namespace

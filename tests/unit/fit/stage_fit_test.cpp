@@ -111,5 +111,40 @@ TEST(StageFit, StatusHasAWord) {
   EXPECT_EQ(to_string(Status::not_identified), "not_identified");
 }
 
+/// x and x^2 of one packing, measured as a and b.
+ResidualBlock parabola_block(int cluster, double a, double b) {
+  ResidualBlock block;
+  block.test = "parabola";
+  block.cluster = cluster;
+  block.weight = Eigen::VectorXd::Ones(2);
+  block.channels = {{"y", 0, 2, 0, 1}};
+  block.evaluate = [a, b](const double* x, double* r, double* J) {
+    r[0] = x[0] - a;
+    r[1] = x[0] * x[0] - b;
+    if (J != nullptr) J[0] = 1, J[1] = 2 * x[0];
+    return true;
+  };
+  return block;
+}
+
+// A model that cannot meet its data, x near the mean of a and x^2 near that of b. For the gradient
+//   g(x) = sum_c (x - a_c) + 2 x (x^2 - b_c) = 0
+// a packing moves x by -(its own part)/g'(x), g' = G (1 + 6 x^2 - 2 mean b); G packings that weigh alike: times
+// sqrt(G/(G-1)).
+TEST(StageFit, ErrorsKnowThatTheModelDoesNotHold) {
+  const std::vector<double> a{1.0, 1.1, 0.85, 1.02}, b{-1.0, -1.04, -0.95, -1.02};
+  std::vector<ResidualBlock> blocks;
+  for (std::size_t c = 0; c < a.size(); ++c) blocks.push_back(parabola_block(static_cast<int>(c), a[c], b[c]));
+  const StageFit fit = fit_stage("parabola", "", {{"x", 1, -10, 10, 1}}, blocks, "", 1, {});
+  const double x = fit.solution.x(0), G = 4, mean_b = (b[0] + b[1] + b[2] + b[3]) / G;
+  const double second = G * (1 + 6 * x * x - 2 * mean_b), without = G * (1 + 4 * x * x);
+  ASSERT_LT(without, 0.5 * second);
+  double variance = 0;
+  for (std::size_t c = 0; c < a.size(); ++c)
+    variance += G / (G - 1) * std::pow(((x - a[c]) + 2 * x * (x * x - b[c])) / second, 2);
+  EXPECT_NEAR(fit.stage.estimates[0].estimate.standard_error, std::sqrt(variance), 1e-5 * std::sqrt(variance));
+  EXPECT_NEAR(fit.stage.estimates[0].estimate.degrees_of_freedom, G - 1, 1e-6);
+}
+
 }  // namespace
 }  // namespace grainlaw::fit
