@@ -13,7 +13,6 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double kRounding = 1e-6;        // of the distances that the search computes in single precision
-constexpr std::size_t kWindow = kBlockSize;  // spheres that are sorted by number of neighbours
 constexpr int kMaxBinsPerAxis = 1024;
 
 using Index3 = std::array<std::uint32_t, 3>;
@@ -43,7 +42,7 @@ struct Spatial {
 };
 
 template <class Real>
-Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin) {
+Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin, ThreadTeam& team) {
   const std::size_t n = lanes.spheres;
   const auto reach_of = [&](const SphereGroup<Real>& group, std::size_t l) {
     return (static_cast<double>(group.radius[l]) + skin / 2) * (1 + kRounding);
@@ -58,36 +57,41 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
     s.bins[a] = static_cast<std::uint32_t>(std::max(1.0, fit));
     s.edge[a] = static_cast<float>(edge[a] * 0x1p-32);
   }
-  s.start.assign(s.at(0, 0, s.bins[2]) + 1, 0);
   std::vector<std::uint32_t> bin(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const SphereGroup<Real>& group = lanes.group[i / kLanes];
-    const std::size_t l = i % kLanes;
-    bin[i] = static_cast<std::uint32_t>(s.at(s.bin_along(0, leading(group.x[l])), s.bin_along(1, leading(group.y[l])),
-                                             s.bin_along(2, leading(group.z[l]))));
-    ++s.start[bin[i] + 1];
-  }
+  team.for_each_block(block_count(n), [&](std::size_t block) {
+    for (std::size_t i = block * kBlockSize; i < std::min(n, (block + 1) * kBlockSize); ++i) {
+      const SphereGroup<Real>& group = lanes.group[i / kLanes];
+      const std::size_t l = i % kLanes;
+      bin[i] = static_cast<std::uint32_t>(s.at(s.bin_along(0, leading(group.x[l])), s.bin_along(1, leading(group.y[l])),
+                                               s.bin_along(2, leading(group.z[l]))));
+    }
+  });
+  s.start.assign(s.at(0, 0, s.bins[2]) + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) ++s.start[bin[i] + 1];
   std::partial_sum(s.start.begin(), s.start.end(), s.start.begin());
   s.from.resize(n);
   std::vector<std::size_t> next(s.start.begin(), s.start.end() - 1);
   for (std::size_t i = 0; i < n; ++i) s.from[next[bin[i]]++] = static_cast<std::uint32_t>(i);
-  const auto sphere_at = [&](std::uint32_t lane) { return lanes.group[lane / kLanes].sphere[lane % kLanes]; };
-  for (std::size_t b = 0; b + 1 < s.start.size(); ++b) {
-    std::sort(s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b]), s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b + 1]),
-              [&](std::uint32_t p, std::uint32_t q) { return sphere_at(p) < sphere_at(q); });
-  }
+
   for (auto* v : {&s.x, &s.y, &s.z}) v->assign(n + kLanes, 0);
   s.sphere.resize(n);
   s.reach.assign(n + kLanes, 0.0F);
-  for (std::size_t p = 0; p < n; ++p) {
-    const SphereGroup<Real>& group = lanes.group[s.from[p] / kLanes];
-    const std::size_t l = s.from[p] % kLanes;
-    s.sphere[p] = group.sphere[l];
-    s.x[p] = leading(group.x[l]);
-    s.y[p] = leading(group.y[l]);
-    s.z[p] = leading(group.z[l]);
-    s.reach[p] = static_cast<float>(reach_of(group, l));
-  }
+  const auto sphere_at = [&](std::uint32_t lane) { return lanes.group[lane / kLanes].sphere[lane % kLanes]; };
+  team.for_each_block(s.bins[2], [&](std::size_t layer) {
+    for (std::size_t b = s.at(0, 0, layer); b < s.at(0, 0, layer + 1); ++b) {
+      const auto first = s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b]), last = s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b + 1]);
+      std::sort(first, last, [&](std::uint32_t p, std::uint32_t q) { return sphere_at(p) < sphere_at(q); });
+    }
+    for (std::size_t p = s.start[s.at(0, 0, layer)]; p < s.start[s.at(0, 0, layer + 1)]; ++p) {
+      const SphereGroup<Real>& group = lanes.group[s.from[p] / kLanes];
+      const std::size_t l = s.from[p] % kLanes;
+      s.sphere[p] = group.sphere[l];
+      s.x[p] = leading(group.x[l]);
+      s.y[p] = leading(group.y[l]);
+      s.z[p] = leading(group.z[l]);
+      s.reach[p] = static_cast<float>(reach_of(group, l));
+    }
+  });
   return s;
 }
 
@@ -230,39 +234,36 @@ template <class Real>
 void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin, double near_skin, ThreadTeam& team) {
   const std::size_t n = lanes.spheres;
   if (n >= std::numeric_limits<std::int32_t>::max() - kLanes) throw InvalidInput("neighbour list: too many spheres");
-  const Spatial s = sort_spatially(lanes, edge, skin);
+  const Spatial s = sort_spatially(lanes, edge, skin, team);
+  const std::size_t groups = (n + kLanes - 1) / kLanes;
   std::vector<Found> blocks(block_count(n));
+  // place among the sorted -> count and first neighbour; lane -> place; place -> lane; group -> rungs
+  std::vector<std::uint32_t> count(n), order(n), rank(n), rungs(groups, 0);
+  std::vector<const std::uint32_t*> first(n);
   team.for_each_block(blocks.size(), [&](std::size_t block) {
-    blocks[block] = search(s, static_cast<float>(skin - near_skin), block * kBlockSize, std::min(n, (block + 1) * kBlockSize));
+    const std::size_t begin = block * kBlockSize, end = std::min(n, begin + kBlockSize);
+    const Found& found = blocks[block] = search(s, static_cast<float>(skin - near_skin), begin, end);
+    const std::uint32_t* neighbour = found.neighbour.data();
+    for (std::size_t p = begin; p < end; ++p) {
+      first[p] = neighbour;
+      count[p] = found.count[p - begin];
+      neighbour += count[p];
+    }
+    // Spheres of a block by number of neighbours, so that the lanes of a group have equally many.
+    const auto lane = order.begin() + static_cast<std::ptrdiff_t>(begin), last = order.begin() + static_cast<std::ptrdiff_t>(end);
+    std::iota(lane, last, static_cast<std::uint32_t>(begin));
+    std::stable_sort(lane, last, [&](std::uint32_t p, std::uint32_t q) { return found.near_count[p - begin] > found.near_count[q - begin]; });
+    for (std::size_t t = begin; t < end; ++t) {
+      rank[order[t]] = static_cast<std::uint32_t>(t);
+      rungs[t / kLanes] = std::max(rungs[t / kLanes], count[order[t]]);
+    }
   });
 
-  // place among the sorted -> count and first neighbour
-  std::vector<std::uint32_t> count(n), near_count(n);
-  std::vector<const std::uint32_t*> first(n);
-  for (std::size_t p = 0; p < n; ++p) {
-    const Found& found = blocks[p / kBlockSize];
-    count[p] = found.count[p % kBlockSize];
-    near_count[p] = found.near_count[p % kBlockSize];
-    first[p] = p % kBlockSize == 0 ? found.neighbour.data() : first[p - 1] + count[p - 1];
-  }
-  std::vector<std::uint32_t> order(n), rank(n);  // lane -> place, place -> lane
-  std::iota(order.begin(), order.end(), 0U);
-  for (std::size_t w = 0; w < n; w += kWindow) {
-    std::stable_sort(order.begin() + static_cast<std::ptrdiff_t>(w), order.begin() + static_cast<std::ptrdiff_t>(std::min(n, w + kWindow)),
-                     [&](std::uint32_t p, std::uint32_t q) { return near_count[p] > near_count[q]; });
-  }
-  for (std::size_t t = 0; t < n; ++t) rank[order[t]] = static_cast<std::uint32_t>(t);
-
-  const std::size_t groups = (n + kLanes - 1) / kLanes;
   SphereGroup<Real> nobodies{};
   std::fill(std::begin(nobodies.radius), std::end(nobodies.radius), Real{kNobodysRadius});
   std::vector<SphereGroup<Real>> group(groups, nobodies);
   lanes.first_rung.assign(groups + 1, 0);
-  for (std::size_t g = 0; g < groups; ++g) {
-    std::uint32_t longest = 0;
-    for (std::size_t t = g * kLanes; t < std::min(n, (g + 1) * kLanes); ++t) longest = std::max(longest, count[order[t]]);
-    lanes.first_rung[g + 1] = lanes.first_rung[g] + longest;
-  }
+  for (std::size_t g = 0; g < groups; ++g) lanes.first_rung[g + 1] = lanes.first_rung[g] + rungs[g];
   constexpr auto row_size = static_cast<std::uint32_t>(sizeof(SphereRow<Real>));
   const auto nobody = static_cast<std::uint32_t>(groups * kLanes);
   lanes.rung.resize(lanes.first_rung[groups]);
@@ -280,7 +281,7 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   lanes.near_rung.resize(lanes.rung.size());
   lanes.near_first.assign(groups, 0);
   lanes.near_count.assign(groups, 0);
-  lanes.frontier = (kReach[2] * n / s.bins[2] + 4 * kWindow) / kLanes;
+  lanes.frontier = (kReach[2] * n / s.bins[2] + 4 * kBlockSize) / kLanes;
   lanes.group = std::move(group);
   lanes.row.assign(nobody + 1, SphereRow<Real>{});
   lanes.row[nobody].radius = Real{kNobodysRadius};
