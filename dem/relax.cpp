@@ -29,6 +29,10 @@ constexpr int kDelay = 10;  // passes downhill before the step grows
 // touch by rounding only.
 constexpr double kRounding = 1e-13;
 
+// Skin of the pairs that passes look at, over that of the list they are picked from: spheres at rest hardly move.
+constexpr double kNearSkin = 0.125;
+constexpr double kOfTheSkin = 0.499;  // that a sphere may move, of two that come nearer together; less rounding
+
 /// Totals of one force pass; `f` is the net force on a sphere over k, `g` = f/sqrt(m), `w` = sqrt(m) v.
 struct Totals {
   double gw = 0, gg = 0, ww = 0;  // sums of g.w, g.g, w.w
@@ -38,17 +42,25 @@ struct Totals {
   double f2_max = 0;              // largest f.f [m^2]
 };
 
+struct Neighbour {
+  std::uint32_t j, image;  ///< as in NeighbourList
+};
+
 struct Minimiser {
   Packing& packing;
   ThreadTeam team;
   NeighbourList list;
+  double near_skin;                    // [m]
+  std::vector<Neighbour> near;         // of the list's neighbours of i, from first[i] on, those within near_skin, in its order
+  std::vector<std::size_t> near_end;   // of these, for each sphere
   std::vector<Eigen::Vector3d> shift;  // H n of each image of the list [m]
   std::vector<Row> place;              // x, y, z, r [m]
   std::vector<Row> reference;          // x, y, z at the last rebuild of the list [m]
+  std::vector<Row> near_reference;     // x, y, z when the near ones were picked [m]
   std::vector<Row> w, g;               // see Totals; [3] of w is 1/sqrt(m)
   std::vector<Totals> parts;           // one per block
 
-  Minimiser(Packing& p, int threads, double skin) : packing(p), team(threads) {
+  Minimiser(Packing& p, int threads, double skin) : packing(p), team(threads), near_skin(kNearSkin * skin) {
     list.skin = skin;
     place.resize(p.size());
     w.resize(p.size());
@@ -75,6 +87,32 @@ struct Minimiser {
       place[i] = {x[0], x[1], x[2], packing.radius[i]};
     }
     reference = place;
+    near.resize(list.j.size());
+    near_end.resize(packing.size());
+    pick_near();
+  }
+
+  void pick_near() {
+    for_each_block([&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        std::size_t last = list.first[i];
+        for (std::size_t c = list.first[i]; c < list.first[i + 1]; ++c) {
+          const Neighbour neighbour{list.j[c], list.image[c]};
+          const Row d = between(i, neighbour);
+          const double reach = d[3] + near_skin;
+          if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) near[last++] = neighbour;
+        }
+        near_end[i] = last;
+      }
+    });
+    near_reference = place;
+  }
+
+  /// From a neighbour to sphere i, and the sum of their radii [m].
+  Row between(std::size_t i, Neighbour neighbour) const {
+    const Row &pi = place[i], &pj = place[neighbour.j];
+    const Eigen::Vector3d& image = shift[neighbour.image];
+    return {pi[0] - pj[0] - image[0], pi[1] - pj[1] - image[1], pi[2] - pj[2] - image[2], pi[3] + pj[3]};
   }
 
   /// Positions back into the fractions of the packing.
@@ -88,43 +126,43 @@ struct Minimiser {
     }
   }
 
-  /// Calls update(i) for each sphere, which may move it; rebuilds the list when one has gone too far.
+  /// Calls update(i) for each sphere, which may move it; picks the near ones again, or rebuilds the list, when one has gone too
+  /// far.
   template <class Update>
   void move(const Update& update) {
-    std::vector<double> moved2(parts.size());
+    std::vector<double> moved2(parts.size()), near_moved2(parts.size());
+    const auto distance2 = [](const Row& a, const Row& b) {
+      double d2 = 0;
+      for (std::size_t k = 0; k < 3; ++k) d2 += (a[k] - b[k]) * (a[k] - b[k]);
+      return d2;
+    };
     for_each_block([&](std::size_t block, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         update(i);
-        double d2 = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const double d = place[i][a] - reference[i][a];
-          d2 += d * d;
-        }
-        moved2[block] = std::max(moved2[block], d2);
+        moved2[block] = std::max(moved2[block], distance2(place[i], reference[i]));
+        near_moved2[block] = std::max(near_moved2[block], distance2(place[i], near_reference[i]));
       }
     });
-    const double farthest = std::sqrt(*std::max_element(moved2.begin(), moved2.end()));
-    if (!(farthest < allowed_displacement(list, packing.H, packing.H))) {
+    const auto farthest = [](const std::vector<double>& d2) { return std::sqrt(*std::max_element(d2.begin(), d2.end())); };
+    if (!(farthest(moved2) < allowed_displacement(list, packing.H, packing.H))) {
       store();
       rebuild();
+    } else if (!(farthest(near_moved2) < kOfTheSkin * near_skin)) {
+      pick_near();
     }
   }
 
   /// Calls visit(j, dx, dy, dz, d, delta) for each contact of sphere i.
   template <class Visit>
   void visit_contacts(std::size_t i, const Visit& visit) const {
-    const Row& pi = place[i];
-    for (std::size_t c = list.first[i]; c < list.first[i + 1]; ++c) {
-      const Row& pj = place[list.j[c]];
-      const Eigen::Vector3d& image = shift[list.image[c]];
-      const double dx = pi[0] - pj[0] - image[0], dy = pi[1] - pj[1] - image[1], dz = pi[2] - pj[2] - image[2];
-      const double reach = pi[3] + pj[3];
+    for (std::size_t c = list.first[i]; c < near_end[i]; ++c) {
+      const auto [dx, dy, dz, reach] = between(i, near[c]);
       const double d2 = dx * dx + dy * dy + dz * dz;
       if (!(d2 < reach * reach)) continue;
       const double d = std::sqrt(d2);
       if (!std::isfinite(dx / d + dy / d + dz / d)) {  // at zero distance, or where its square underflows
         throw Error(fmt::format("spheres {} and {} share one position; move one of them", packing.id[i],
-                                packing.id[list.j[c]]));
+                                packing.id[near[c].j]));
       }
       visit(dx / d, dy / d, dz / d, reach - d);
     }
