@@ -130,6 +130,18 @@ std::string window_text(const CalibrationOptions& options) {
 
 }  // namespace
 
+std::vector<std::string> evolution_parameters(Coupling coupling, const std::vector<std::string>& held) {
+  std::vector<std::string> names{"pressure.p0", "pressure.gamma_p", "pressure.nu_c"};
+  const auto is_free = [&](const std::string& name) { return std::find(held.begin(), held.end(), name) == held.end(); };
+  for (const std::string law : {"stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"}) {
+    if (!is_free(law)) continue;
+    for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) names.push_back(law + part);
+  }
+  const std::string anisotropy = coupling == Coupling::energy ? "anisotropy.a2" : "anisotropy.a0";
+  if (is_free(anisotropy)) names.push_back(anisotropy);
+  return names;
+}
+
 bool contains_anisotropy(const std::vector<Trajectory>& trajectories) {
   return std::any_of(trajectories.begin(), trajectories.end(), [](const Trajectory& t) {
     return !t.axes.empty() && !t.rows.empty() && std::abs(t.direction.dx) * t.rows.back().e > kVolumetricPath;
@@ -143,7 +155,8 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
   const std::string coupling = energy ? "anisotropy.a2" : "anisotropy.a0";
   const bool anisotropy = contains_anisotropy(trajectories);
   if (!anisotropy) held.push_back(coupling);
-  const EvolutionProblem problem = evolution_problem(trajectories, law, held, options);
+  const std::vector<std::string> free = evolution_parameters(options.coupling, held);
+  const EvolutionProblem problem = evolution_problem(trajectories, law, free, options);
   StageFit fit = fit_stage("evolution", window_text(options), problem.parameters, problem.blocks,
                            "the trajectories do not determine it; test more densities, and D2 to steady state",
                            options.threads, control, {options.loss, options.starts});
@@ -158,7 +171,7 @@ StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameter
     inherit_error(
         {"coordination", "rattlers"}, found, law,
         [&](const LawParameters<double>& given) {
-          return evolution_problem(trajectories, given, held, options).blocks;
+          return evolution_problem(trajectories, given, free, options).blocks;
         },
         options.threads, fit);
     for (const ShearQuantity& quantity : kShearQuantities) settle_constant_law(fit, quantity.name);

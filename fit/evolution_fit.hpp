@@ -1,29 +1,16 @@
 #pragma once
-// The coupled evolution equations, Eq. (16), on all trajectories at once. Free: p0, gamma_p, nu_c of Eq. (14), the twelve
-// numbers of Eq. (20), and a2 (Coupling::energy) or a0 (Coupling::single). Compared, row by row at the observed strains:
-//   P*  relative to the datum, on ISO unloading only. In shear P is shown but has no weight: Eq. (16) has no dilatancy
-//       (+33 % at nu = .68), and a fit of it would turn a2 (through A1) and p0 into something else.
-//   s   sigma'/P with the model's own P in the model and the measured one in the data, so that a wrong level of P cancels
-//   F   fabric
-// The deviators along the directions of the test's own segments (s_par, F_par; one component on co-axial paths): what
-// stands across them is the noise of a finite packing, and no parameter moves it.
-// Weights: shear_window.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
+// The coupled evolution equations, Eq. (16), on all trajectories at once (evolution_problem.hpp). Free: p0, gamma_p, nu_c of
+// Eq. (14), the twelve numbers of Eq. (20), and a2 (Coupling::energy) or a0 (Coupling::single).
 
+#include "fit/evolution_problem.hpp"
 #include "fit/inherited_error.hpp"
 #include "fit/stage_fit.hpp"
 #include "fit/trajectory.hpp"
 
 namespace grainlaw::fit {
 
-struct EvolutionProblem {
-  std::vector<FreeParameter> parameters;
-  std::vector<ResidualBlock> blocks;  ///< one per trajectory
-};
-
-/// Starts from `start`; parameters that are not free keep its values. `held`: names of laws of Eq. (20), or the name of
-/// the coupling's parameter, that are not free.
-EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                                   const std::vector<std::string>& held, const CalibrationOptions& options);
+/// Names of the free parameters without those of the laws of Eq. (20), or the coupling's, named in `held`.
+std::vector<std::string> evolution_parameters(Coupling coupling, const std::vector<std::string>& held = {});
 
 /// True when a trajectory changes the volume of a state with fabric along its test's shear: only then the coupling of
 /// fabric and volumetric strain is in the data.

@@ -1,10 +1,10 @@
+#include "fit/evolution_problem.hpp"
+
 #include <ceres/jet.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "fit/evolution_fit.hpp"
-#include "fit/lode_fit.hpp"
 #include "fit/trajectory_misfit.hpp"
 
 namespace grainlaw::fit {
@@ -13,18 +13,6 @@ namespace {
 constexpr int kMostParameters = 16;
 using Jet = ceres::Jet<double, kMostParameters>;
 constexpr double kNearestJamming = 1e-4;  // nu - nu_c that the lowest row keeps
-
-std::vector<std::string> free_names(Coupling coupling, const std::vector<std::string>& held) {
-  std::vector<std::string> names{"pressure.p0", "pressure.gamma_p", "pressure.nu_c"};
-  const auto is_free = [&](const std::string& name) { return std::find(held.begin(), held.end(), name) == held.end(); };
-  for (const std::string law : {"stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"}) {
-    if (!is_free(law)) continue;
-    for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) names.push_back(law + part);
-  }
-  const std::string anisotropy = coupling == Coupling::energy ? "anisotropy.a2" : "anisotropy.a0";
-  if (is_free(anisotropy)) names.push_back(anisotropy);
-  return names;
-}
 
 double least_nu(const std::vector<Trajectory>& trajectories) {
   double least = 1;
@@ -78,8 +66,10 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
   return block;
 }
 
-EvolutionProblem problem_of(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                            const std::vector<std::string>& free, const CalibrationOptions& options) {
+}  // namespace
+
+EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
+                                   const std::vector<std::string>& free, const CalibrationOptions& options) {
   EvolutionProblem problem;
   std::vector<std::size_t> index;
   const auto value = fields(start);
@@ -92,18 +82,6 @@ EvolutionProblem problem_of(const std::vector<Trajectory>& trajectories, const L
   }
   for (const Trajectory& t : trajectories) problem.blocks.push_back(block_of(t, start, index, options));
   return problem;
-}
-
-}  // namespace
-
-EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                                   const std::vector<std::string>& held, const CalibrationOptions& options) {
-  return problem_of(trajectories, start, free_names(options.coupling, held), options);
-}
-
-EvolutionProblem lode_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                              const CalibrationOptions& options) {
-  return problem_of(trajectories, start, lode_parameters(), options);
 }
 
 }  // namespace grainlaw::fit

@@ -42,7 +42,8 @@ ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories) {
 StageFit fit_lode(const std::vector<Trajectory>& others, LawParameters<double>& law, const CalibrationOptions& options,
                   const RunControl& control, const FoundErrors& found) {
   if (std::all_of(others.begin(), others.end(), [](const Trajectory& t) { return t.rows.empty(); })) return no_effect();
-  const EvolutionProblem problem = lode_problem(others, law, options);
+  const std::vector<std::string> free = lode_parameters();
+  const EvolutionProblem problem = evolution_problem(others, law, free, options);
   StageFit fit =
       fit_stage("lode", "shear at constant volume unlike D2, rows and weights of the stage evolution",
                 problem.parameters, problem.blocks, "too little shear unlike D2; shear by D3 to steady state",
@@ -51,8 +52,8 @@ StageFit fit_lode(const std::vector<Trajectory>& others, LawParameters<double>& 
   law.lode = {fit.solution.x(0), fit.solution.x(1)};
   inherit_error(
       kGivenLaws, found, law,
-      [&](const LawParameters<double>& given) { return lode_problem(others, given, options).blocks; }, options.threads,
-      fit);
+      [&](const LawParameters<double>& given) { return evolution_problem(others, given, free, options).blocks; },
+      options.threads, fit);
   return fit;
 }
 

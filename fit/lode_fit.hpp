@@ -20,10 +20,6 @@ ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories);
 /// "lode.stress_ratio", "lode.fabric".
 std::vector<std::string> lode_parameters();
 
-/// Free: the parameters above; the others keep the values of `start`.
-EvolutionProblem lode_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                              const CalibrationOptions& options);
-
 /// Stage "lode" on trajectories of another Lode angle; `law` takes the result. Without any both effects are fixed at zero.
 /// Errors contain those of `found` for the laws that are held.
 StageFit fit_lode(const std::vector<Trajectory>& others, LawParameters<double>& law, const CalibrationOptions& options,

@@ -31,9 +31,13 @@ const Estimate& estimate(const StageFit& fit, const std::string& name) {
   throw std::runtime_error("no estimate of " + name);
 }
 
+EvolutionProblem problem_of(const std::vector<Trajectory>& all) {
+  return evolution_problem(all, kTruth, evolution_parameters(Coupling::energy), {});
+}
+
 TEST(EvolutionFit, TruthHasNoMisfit) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
-  const EvolutionProblem problem = evolution_problem(all, kTruth, {}, {});
+  const EvolutionProblem problem = problem_of(all);
   ASSERT_EQ(problem.parameters.size(), 16u);
   ASSERT_EQ(problem.blocks.size(), all.size());
   std::vector<double> x;
@@ -60,7 +64,7 @@ TEST(EvolutionFit, EachAxisHasItsOwnRows) {
     row.data.sigma += row.data.P * (0.003 * N + 0.004 * M);
     row.data.F += 0.01 * N + 0.02 * M;
   }
-  const EvolutionProblem problem = evolution_problem({sheared}, kTruth, {}, {});
+  const EvolutionProblem problem = problem_of({sheared});
   std::vector<double> x;
   for (const FreeParameter& p : problem.parameters) x.push_back(p.start);
   const ResidualBlock& block = problem.blocks.front();
@@ -77,7 +81,7 @@ TEST(EvolutionFit, EachAxisHasItsOwnRows) {
 
 TEST(EvolutionFit, PressureInShearIsShownAndNotFitted) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
-  for (const ResidualBlock& block : evolution_problem(all, kTruth, {}, {}).blocks) {
+  for (const ResidualBlock& block : problem_of(all).blocks) {
     const Channel& pressure = block.channels.at(0);
     ASSERT_EQ(pressure.quantity, "P_star");
     const double weight = block.weight.segment(pressure.first, pressure.rows).maxCoeff();

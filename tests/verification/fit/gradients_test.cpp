@@ -86,7 +86,7 @@ double worst_of_evolution(Coupling coupling) {
   options.max_step = 1e-2;  // derivatives are those of the discrete integrator, whatever its step
   const LawParameters<double> start = testing::synthetic_truth();
   const auto trajectories = trajectories_of(check_and_sort(records()), 0.67, options);
-  const EvolutionProblem problem = evolution_problem(trajectories, start, {}, options);
+  const EvolutionProblem problem = evolution_problem(trajectories, start, evolution_parameters(coupling), options);
   return worst(problem.parameters, problem.blocks, 4, problem.parameters[2].upper + 1e-4);
 }
 
