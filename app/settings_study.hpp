@@ -4,8 +4,10 @@
 //   sampling^2 = mean of their squared 95 % intervals    reached^2  = max(error^2 - floor^2, 0) + noise^2
 // error^2 - floor^2 estimates the square of what the setting itself does. The noise that comes on top is the floor where all
 // settings have the same packings, of which only differences count, and sampling where packings are chosen, too: the interval
-// is all that users of the setting have, and few packings do not know their own scatter (two: t = 12.7). Costs are counted in
-// particle-steps; seconds are beside them.
+// is all that users of the setting have, and few packings do not know their own scatter (two: t = 12.7). Nor does a time step or
+// a rate change how packings scatter: among settings that differ only in how they compute, sampling is pooled (root mean square),
+// lest a setting dominate by a scatter that happens to come out small. Costs are counted in particle-steps; seconds are beside
+// them.
 
 #include <cstdint>
 #include <string>
@@ -47,12 +49,10 @@ struct SettingOutcome {
 
 struct SettingResult {
   SettingOutcome outcome;
-  std::vector<QuantityError> errors;                       ///< the reference's quantities
-  double error = 0, floor = 0, sampling = 0, reached = 0;  ///< NaN where it shows none of them [-]
-  std::vector<std::string> dominated_by;                   ///< settings that cost less and reach as much
+  std::vector<QuantityError> errors;                                  ///< the reference's quantities
+  double error = 0, floor = 0, sampling = 0, noise = 0, reached = 0;  ///< NaN where it shows none of them [-]
+  std::vector<std::string> dominated_by;                              ///< settings that cost less and reach as much
 };
-
-SettingResult compare_setting(const SettingOutcome& setting, const SettingOutcome& reference, Packings packings);
 
 struct SettingsStudy {
   std::string kind;   ///< "dem", "chain", "fit"

@@ -28,6 +28,7 @@ OrderedJson result_to_json(const SettingResult& r) {
   object["error"] = number_or_null(r.error);
   object["floor"] = number_or_null(r.floor);
   object["sampling"] = number_or_null(r.sampling);
+  object["noise"] = number_or_null(r.noise);
   object["reached"] = number_or_null(r.reached);
   object["dominated"] = !r.dominated_by.empty();
   object["dominated_by"] = r.dominated_by;

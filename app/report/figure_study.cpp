@@ -10,10 +10,6 @@ namespace {
 constexpr std::array kMarkers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond, Marker::plus};
 constexpr std::array kColours{Colour::blue, Colour::green, Colour::purple, Colour::orange, Colour::sky};
 
-double noise_of(const SettingResult& r, Packings packings) {
-  return packings == Packings::given ? r.floor : r.sampling;
-}
-
 /// `number`: of the setting; neighbours differ in symbol and colour, the sixth to tenth are outlines.
 Series point_of(const SettingResult& r, std::size_t number) {
   Series series;
@@ -35,7 +31,7 @@ std::array<Series, 2> floor_of(const std::vector<const SettingResult*>& by_cost,
   edge.line = Line::dotted;
   shade.bands.emplace_back();
   for (const SettingResult* r : by_cost) {
-    const double noise = noise_of(*r, packings);
+    const double noise = r->noise;
     if (!(noise > 0)) continue;
     edge.x.push_back(r->outcome.cost.particle_steps);
     edge.y.push_back(noise);
@@ -47,10 +43,10 @@ std::array<Series, 2> floor_of(const std::vector<const SettingResult*>& by_cost,
 }
 
 /// The decade below the least error or floor.
-double bottom_of(const std::vector<const SettingResult*>& results, Packings packings) {
+double bottom_of(const std::vector<const SettingResult*>& results) {
   double least = 1;
   for (const SettingResult* r : results) {
-    for (const double value : {r->reached, noise_of(*r, packings)}) {
+    for (const double value : {r->reached, r->noise}) {
       if (value > 0) least = std::min(least, value);
     }
   }
@@ -77,7 +73,7 @@ Figure figure_of(const SettingsStudy& study) {
   panel.x.label = plain("particle-steps");
   panel.y.label = plain("relative error reached [–]");
   panel.x.logarithmic = panel.y.logarithmic = true;
-  const double bottom = bottom_of(by_cost, study.packings);
+  const double bottom = bottom_of(by_cost);
   panel.y.from = bottom;
   for (const Series& series : floor_of(by_cost, study.packings, bottom)) panel.series.push_back(series);
   for (std::size_t i = study.judged + 1; i < study.results.size(); ++i) {

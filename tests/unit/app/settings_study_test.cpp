@@ -22,19 +22,42 @@ SettingOutcome outcome(const std::string& name, double cost, double error, doubl
 }
 
 TEST(SettingsStudy, NoiseIsTheFloorOfGivenPackingsAndTheSamplingOfChosenOnes) {
-  const SettingOutcome reference = outcome("reference", 9, 0, 0.03, {1, 2}),
-                       setting = outcome("x", 1, 0.05, 0.04, {8, 9});
+  const SettingOutcome reference = outcome("reference", 9, 0, 0.03, {1, 2});
+  const auto result = [&](const SettingOutcome& setting, Packings packings) {
+    return study_of("chain", "", packings, {}, {reference, setting}, 1).results[1];
+  };
   for (const Packings packings : {Packings::given, Packings::chosen}) {
-    const SettingResult r = compare_setting(setting, reference, packings);
+    const SettingResult r = result(outcome("x", 1, 0.05, 0.04, {8, 9}), packings);
     EXPECT_NEAR(r.error, 0.05, 1e-14);
     EXPECT_NEAR(r.floor, 0.05, 1e-14);  // of .03 and .04, other packings
     EXPECT_NEAR(r.sampling, student_95(1) * 0.04, 1e-12);
+    EXPECT_EQ(r.noise, packings == Packings::given ? r.floor : r.sampling);
     // all of the error may be chance
-    EXPECT_NEAR(r.reached, packings == Packings::given ? 0.05 : r.sampling, 1e-9);
+    EXPECT_NEAR(r.reached, r.noise, 1e-9);
   }
-  const SettingResult paired = compare_setting(outcome("x", 1, 0.05, 0.04, {1, 2}), reference, Packings::chosen);
+  const SettingResult paired = result(outcome("x", 1, 0.05, 0.04, {1, 2}), Packings::given);
   EXPECT_NEAR(paired.floor, 0.01, 1e-14);
-  EXPECT_NEAR(paired.reached, std::hypot(std::sqrt(0.0025 - 0.0001), paired.sampling), 1e-14);
+  EXPECT_NEAR(paired.reached, std::hypot(std::sqrt(0.0025 - 0.0001), 0.01), 1e-14);
+}
+
+// How far packings lie apart is theirs, not the time step's: sqrt((.02^2 + .04^2)/2) of both, t standard errors each.
+TEST(SettingsStudy, SettingsThatOnlyComputeOtherwiseShareTheirSampling) {
+  const std::vector<std::uint64_t> seeds{1, 2, 3};
+  const SettingOutcome reference = outcome("reference", 9, 0, 0.03, {1, 2, 3, 4});
+  SettingOutcome coarse = outcome("coarse", 1, 0, 0.04, seeds), fewer = outcome("fewer", 1, 0, 0.09, seeds);
+  coarse.changes = {{"time_step_fraction", 0.2}};
+  fewer.changes = {{"densities", {0.7, 0.8}}};
+  SettingOutcome other = coarse;
+  other.model = "reduced";
+  const SettingsStudy study = study_of("chain", "", Packings::chosen, {},
+                                       {reference, outcome("base", 2, 0, 0.02, seeds), coarse, fewer, other}, 1);
+  const double t = student_95(2), pooled = t * std::sqrt((0.0004 + 0.0016) / 2);
+  EXPECT_NEAR(study.results[1].noise, pooled, 1e-12);
+  EXPECT_NEAR(study.results[2].noise, pooled, 1e-12);
+  EXPECT_NEAR(study.results[2].sampling, t * 0.04, 1e-12) << "its own stays";
+  EXPECT_NEAR(study.results[3].noise, t * 0.09, 1e-12) << "other tests";
+  EXPECT_NEAR(study.results[4].noise, t * 0.04, 1e-12) << "another model";
+  EXPECT_NEAR(study.results[0].noise, student_95(3) * 0.03, 1e-12) << "other packings";
 }
 
 TEST(SettingsStudy, ADefaultIsDominatedByWhatIsCheaperAndNotWorse) {
@@ -64,7 +87,7 @@ TEST(SettingsStudy, WhatShowsLessDominatesNothing) {
   EXPECT_NEAR(study.results[2].error, 0.001, 1e-14);
   EXPECT_TRUE(study.results[1].dominated_by.empty());
   half.quantities.clear();
-  EXPECT_TRUE(std::isnan(compare_setting(half, reference, Packings::given).reached));
+  EXPECT_TRUE(std::isnan(study_of("dem", "", Packings::given, {}, {reference, half}, 1).results[1].reached));
 }
 
 TEST(SettingsStudy, RunsAreCountedOnceAndCalibrationTestsOnly) {
