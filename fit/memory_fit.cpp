@@ -36,11 +36,16 @@ struct Counted {
   bool beyond = false;  ///< the others, too; together they weigh as much
 };
 
+/// Mean P* of the rows. Weights by each row's own P* would be larger where its noise makes it small, and the law too low.
+double mean_pressure(const Trajectory& t) {
+  double sum = 0;
+  for (const TrajectoryRow& row : t.rows) sum += row.data.P;
+  return sum / static_cast<double>(t.rows.size());
+}
+
 /// Adds a quantity as one channel.
 void add_channel(const Trajectory& t, const std::string& quantity, Counted counted, ResidualBlock& block,
-                 double (*datum)(const Trajectory&, const LawState<double>&),
-                 double (*scale)(const LawState<double>&, const CalibrationOptions&),
-                 const CalibrationOptions& options) {
+                 double (*datum)(const Trajectory&, const LawState<double>&), double scale) {
   const int rows = static_cast<int>(t.rows.size()), first = rows * static_cast<int>(block.channels.size());
   const auto in = [&](const TrajectoryRow& row) { return t.direction.de * row.e <= counted.window + kRounding; };
   const auto inside = std::count_if(t.rows.begin(), t.rows.end(), in), outside = rows - inside;
@@ -49,8 +54,7 @@ void add_channel(const Trajectory& t, const std::string& quantity, Counted count
     const TrajectoryRow& row = t.rows[static_cast<std::size_t>(i)];
     channel.max_abs_data = std::max(channel.max_abs_data, std::abs(datum(t, row.data)));
     if (in(row) || counted.beyond)
-      block.weight(first + i) =
-          1 / (std::sqrt(static_cast<double>(in(row) ? inside : outside)) * scale(row.data, options));
+      block.weight(first + i) = 1 / (std::sqrt(static_cast<double>(in(row) ? inside : outside)) * scale);
   }
   block.channels.push_back(channel);
 }
@@ -65,15 +69,14 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
   block.weight = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(t.rows.size()));
   add_channel(
       t, "P_star", shear ? all : none, block, [](const Trajectory&, const LawState<double>& y) { return y.P; },
-      [](const LawState<double>& y, const CalibrationOptions& o) { return o.pressure_scale * y.P; }, options);
+      options.pressure_scale * mean_pressure(t));
   add_channel(
       t, "s_par", shear ? Counted{options.stiffness_window, true} : all, block,
       [](const Trajectory& of, const LawState<double>& y) { return y.sigma.dot(of.axes.front()) / y.P; },
-      [](const LawState<double>&, const CalibrationOptions& o) { return o.stress_scale; }, options);
+      options.stress_scale);
   add_channel(
       t, "F_par", shear ? Counted{options.lag_window} : all, block,
-      [](const Trajectory& of, const LawState<double>& y) { return y.F.dot(of.axes.front()); },
-      [](const LawState<double>&, const CalibrationOptions& o) { return o.fabric_scale; }, options);
+      [](const Trajectory& of, const LawState<double>& y) { return y.F.dot(of.axes.front()); }, options.fabric_scale);
   block.evaluate =
       differentiated<Jet>(TrajectoryMisfit{t, fixed, index, Rung::memory, Coupling::energy, options.max_step, 1},
                           static_cast<int>(index.size()), block.rows());
@@ -82,8 +85,9 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
 
 std::string window_text(const CalibrationOptions& options) {
   return fmt::format(
-      "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative, "
-      "scale {:g}, s_par of eps_dev <= {:g} and with the same weight of the rest, scale {:g}, F_par of eps_dev <= "
+      "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative "
+      "to the mean, scale {:g}, s_par of eps_dev <= {:g} and with the same weight of the rest, scale {:g}, F_par of "
+      "eps_dev <= "
       "{:g}, scale {:g}; "
       "where the volume "
       "changes s_par and F_par of all rows",

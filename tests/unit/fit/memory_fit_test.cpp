@@ -75,6 +75,23 @@ TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
   EXPECT_EQ(estimate(fit, "memory.k").status, Status::fitted);
 }
 
+// Weights 1/d_i of noisy data d_i favour the low ones: the level of a constant P comes out too low by twice the square of the
+// relative noise. One weight for all rows of a test has no such bias.
+TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {
+  const CalibrationOptions options;
+  for (const Trajectory& t : trajectories(testing::synthetic_dataset(truth(), of_memory()))) {
+    if (t.axes.empty() || std::abs(t.direction.dx) > 1e-12) continue;
+    const MemoryProblem problem = memory_problem({t}, truth(), true, options);
+    const Channel& P = problem.blocks.front().channels.front();
+    ASSERT_EQ(P.quantity, "P_star");
+    double mean = 0;
+    for (const TrajectoryRow& row : t.rows) mean += row.data.P / P.rows;
+    const double expected = 1 / (std::sqrt(P.rows) * options.pressure_scale * mean);
+    const Eigen::VectorXd w = problem.blocks.front().weight.segment(P.first, P.rows);
+    EXPECT_LT((w.array() - expected).abs().maxCoeff(), 1e-12 * expected) << t.test;
+  }
+}
+
 /// Two packings whose fabric lags by 1/lambda each, fitted together.
 StageFit fit_of_lags(double one, double other) {
   std::vector<TestRecord> tests;
