@@ -58,4 +58,21 @@ Dataset run_setting(const SpecSetting& setting, const std::filesystem::path& out
                      counts);
 }
 
+std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged, Session& session,
+                                        const std::function<SettingOutcome(const SpecSetting&)>& show) {
+  std::vector<SettingOutcome> outcomes;
+  for (const SpecSetting& setting : settings) {
+    try {
+      outcomes.push_back(show(setting));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      if (outcomes.size() <= judged) throw;
+      session.progress.log(fmt::format("{} fails: {}", setting.name, one_line(error.what(), 300)));
+      outcomes.push_back({setting.name, setting.changes, {}, setting.spec.seeds, {}, "", error.what()});
+    }
+  }
+  return outcomes;
+}
+
 }  // namespace grainlaw::app

@@ -2,6 +2,7 @@
 // The settings of a study that are SPECs: a base as it stands in its file, and the same with changed keys.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "app/files/spec_file.hpp"
 #include "app/key_changes.hpp"
 #include "app/session.hpp"
+#include "app/settings_study.hpp"
 
 namespace grainlaw::app {
 
@@ -29,5 +31,10 @@ std::vector<SpecSetting> settings_of(const std::filesystem::path& spec, const st
 
 /// Runs the setting's calibration tests; data sets go to `output`/data, runs to `output`/runs, where they are found again.
 Dataset run_setting(const SpecSetting& setting, const std::filesystem::path& output, Session& session);
+
+/// What each setting has shown, by `show`. One after `judged` that fails, as a time step does that the engine refuses to go on
+/// with, shows nothing but its note; the study goes on.
+std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged, Session& session,
+                                        const std::function<SettingOutcome(const SpecSetting&)>& show);
 
 }  // namespace grainlaw::app

@@ -25,19 +25,21 @@ ExitCode study_chain(const StudyChainOptions& options, Session& session) {
   const Path path = study_path(options.path);
   const std::size_t judged = options.reference.empty() ? 0 : 1;
   make_output_folder(options.output);
-  std::vector<SettingOutcome> outcomes;
-  std::vector<double> densities;
-  for (const SpecSetting& setting : settings) {
+  std::vector<double> densities;  // of the first setting, the reference
+  const auto show = [&](const SpecSetting& setting) {
     const Dataset dataset = run_setting(setting, options.output, session);
-    if (outcomes.empty()) densities = shear_densities(dataset);
+    const bool first = densities.empty();
+    if (first) densities = shear_densities(dataset);
     fit::CalibrationOptions fit_options;
     fit_options.threads = session.threads;
     fit_options.coupling = setting.spec.coupling;
-    outcomes.push_back(
-        calibrated_setting(setting.name, setting.changes, dataset, fit_options, densities, path, session));
-    if (outcomes.front().model.empty())
-      throw InvalidInput(fmt::format("{}: predicts nothing to compare with: {}", setting.name, outcomes.front().note));
-  }
+    SettingOutcome outcome =
+        calibrated_setting(setting.name, setting.changes, dataset, fit_options, densities, path, session);
+    if (first && outcome.model.empty())
+      throw InvalidInput(fmt::format("{}: predicts nothing to compare with: {}", setting.name, outcome.note));
+    return outcome;
+  };
+  const std::vector<SettingOutcome> outcomes = outcomes_of(settings, judged, session, show);
   const SettingsStudy study =
       study_of("chain", kError, Packings::chosen, Json(spec_to_json(settings[judged].spec)), outcomes, judged);
   finish_study(options.output, study_to_json(study), "settings.svg", report::figure_of(study), study_table(study),

@@ -30,14 +30,13 @@ ExitCode study_dem(const StudyDemOptions& options, Session& session) {
           fmt::format("{}: seeds are what settings are compared over; leave them as they are", setting.name));
   }
   make_output_folder(options.output);
-  std::vector<SettingOutcome> outcomes;
-  for (const SpecSetting& setting : settings) {
+  const auto show = [&](const SpecSetting& setting) -> SettingOutcome {
     const Dataset dataset = run_setting(setting, options.output, session);
     const std::vector<std::uint64_t> seeds = packings_of(dataset);
-    outcomes.push_back(
-        {setting.name, setting.changes, cost_of(dataset), seeds, packing_quantities(dataset, seeds), "", ""});
-  }
-  const SettingsStudy study = study_of("dem", kError, Packings::given, Json(spec_to_json(base.spec)), outcomes, 1);
+    return {setting.name, setting.changes, cost_of(dataset), seeds, packing_quantities(dataset, seeds), "", ""};
+  };
+  const SettingsStudy study = study_of("dem", kError, Packings::given, Json(spec_to_json(base.spec)),
+                                       outcomes_of(settings, 1, session, show), 1);
   finish_study(options.output, study_to_json(study), "settings.svg", report::figure_of(study), study_table(study),
                session);
   return ExitCode::ok;

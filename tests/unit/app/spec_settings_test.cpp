@@ -38,5 +38,32 @@ TEST_F(SpecSettings, AreRefusedBeforeAnythingRuns) {
   EXPECT_THROW(settings_of(spec_, {}, {"rows=50", "rows=50"}), InvalidInput);
 }
 
+TEST_F(SpecSettings, OneThatFailsShowsNothingAndTheOthersGoOn) {
+  const auto settings = settings_of(spec_, {"rows=400"}, {"time_step_fraction=0.2", "rows=50"});
+  ProgressPrinter quiet(stderr, true);
+  Session session{"test", 1, false, {}, quiet, {}};
+  std::string failing = "time_step_fraction=0.2";
+  const auto show = [&](const SpecSetting& setting) -> SettingOutcome {
+    if (setting.name == failing) throw Error("the results would be wrong");
+    return {setting.name, setting.changes, {7, 1, 0}, setting.spec.seeds, {}, "", ""};
+  };
+  const std::vector<SettingOutcome> outcomes = outcomes_of(settings, 1, session, show);
+  ASSERT_EQ(outcomes.size(), 4u);
+  EXPECT_EQ(outcomes[2].name, failing);
+  EXPECT_EQ(outcomes[2].note, "the results would be wrong");
+  EXPECT_EQ(outcomes[2].cost.particle_steps, 0);
+  EXPECT_EQ(outcomes[3].cost.particle_steps, 7);
+  EXPECT_TRUE(outcomes[3].note.empty());
+  for (const char* needed : {"reference", "base"}) {
+    failing = needed;
+    EXPECT_THROW(outcomes_of(settings, 1, session, show), Error) << needed;
+  }
+  const auto stopped = [](const SpecSetting& setting) -> SettingOutcome {
+    if (setting.name == "rows=50") throw Interrupted("stopped");
+    return {setting.name, {}, {}, {}, {}, "", ""};
+  };
+  EXPECT_THROW(outcomes_of(settings, 1, session, stopped), Interrupted);
+}
+
 }  // namespace
 }  // namespace grainlaw::app
