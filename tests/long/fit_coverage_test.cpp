@@ -25,7 +25,9 @@ TEST_P(Coverage, F2F3CompleteCalibration) {
 INSTANTIATE_TEST_SUITE_P(
     Studies, Coverage,
     ::testing::Values(CoverageStudy{1000, 3, 0, 0, 100000}, CoverageStudy{1000, 5, 0, 0, 200000},
-                      CoverageStudy{1000, 3, 0.9, 0, 500000}, CoverageStudy{1000, 3, 0.9, 0.02, 800000}),
+                      CoverageStudy{1000, 10, 0, 0, 300000}, CoverageStudy{1000, 3, 0.5, 0, 400000},
+                      CoverageStudy{1000, 3, 0.9, 0, 500000}, CoverageStudy{1000, 5, 0.9, 0, 600000},
+                      CoverageStudy{1000, 10, 0.9, 0, 700000}, CoverageStudy{1000, 3, 0.9, 0.02, 800000}),
     [](const auto& study) {
       std::string name = study.param.name();
       std::replace(name.begin(), name.end(), '.', '_');
