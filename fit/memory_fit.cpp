@@ -15,8 +15,7 @@ namespace {
 
 constexpr int kMostParameters = 7;
 using Jet = ceres::Jet<double, kMostParameters>;
-constexpr double kVague = 0.5;       // relative error beyond which a parameter is no number
-constexpr double kShortLag = 0.005;  // strain; a lag of fabric, 1/lambda, known to that may be any part of it, or none
+constexpr double kVague = 0.5;  // relative error beyond which a parameter is no number
 constexpr double kRounding = 1e-9;
 const std::vector<std::string> kGivenLaws{"coordination",        "rattlers",        "pressure",
                                           "steady_coordination", "steady_rattlers", "steady_pressure",
@@ -134,8 +133,7 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
       const double value = fit.solution.x(static_cast<Eigen::Index>(k));
       *field[parameter_index(name)] = value;
       const double error = fit.stage.estimates[k].estimate.standard_error;
-      const bool may_be_none = name == "memory.chi" || (name == "memory.lambda" && error < kShortLag * value * value);
-      if (!may_be_none && error > kVague * std::abs(value))
+      if (name != "memory.chi" && error > kVague * std::abs(value))  // chi may be none
         fit.mark_not_identified(
             name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
                       (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));

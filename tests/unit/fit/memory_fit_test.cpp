@@ -92,31 +92,6 @@ TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {
   }
 }
 
-/// Two packings whose fabric lags by 1/lambda each, fitted together.
-StageFit fit_of_lags(double one, double other) {
-  std::vector<TestRecord> tests;
-  std::uint64_t seed = 0;
-  for (const double lambda : {one, other}) {
-    LawParameters<double> p = truth();
-    p.memory.lambda = lambda;
-    SyntheticOptions options = of_memory();
-    options.seeds = {++seed};
-    for (const TestRecord& test : testing::synthetic_dataset(p, options)) tests.push_back(test);
-  }
-  LawParameters<double> law = at_start();
-  return fit_memory(trajectories(tests), law, {}, {});
-}
-
-// How long fabric lags matters, not how many lags go into a strain: 1/lambda known to .005 is as good as none.
-TEST(MemoryFit, ALagThatMayBeNoneIsKnown) {
-  const StageFit brief = fit_of_lags(150, 2000);
-  const Estimate& lambda = estimate(brief, "memory.lambda");
-  EXPECT_EQ(lambda.status, Status::fitted) << lambda.note;
-  EXPECT_GT(lambda.standard_error, 0.5 * lambda.value) << "the test's purpose";
-  const StageFit lengthy = fit_of_lags(12, 150);
-  EXPECT_EQ(estimate(lengthy, "memory.lambda").status, Status::not_identified);
-}
-
 TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
   SyntheticOptions few = of_memory();
   few.densities = {0.70, 0.74};
