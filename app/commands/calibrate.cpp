@@ -6,16 +6,16 @@
 #include <fstream>
 #include <iterator>
 
-#include "app/adopted_dataset.hpp"
 #include "app/commands/calibrate_target.hpp"
-#include "app/dataset_runs.hpp"
 #include "app/files/calibration_file.hpp"
 #include "app/files/dataset.hpp"
 #include "app/files/parameters_file.hpp"
 #include "app/files/spec_file.hpp"
 #include "app/output_folder.hpp"
+#include "app/published/verdicts.hpp"
 #include "app/report/report.hpp"
-#include "app/verdicts.hpp"
+#include "app/runs/adopted_dataset.hpp"
+#include "app/runs/dataset_runs.hpp"
 #include "fit/calibrate.hpp"
 #include "fit/leave_one_out.hpp"
 #include "model/error.hpp"

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "app/files/path_file.hpp"
-#include "app/files/plan_file.hpp"
 #include "app/output_folder.hpp"
-#include "app/plan_pilot.hpp"
-#include "app/planned_spec.hpp"
+#include "app/plan/plan_file.hpp"
+#include "app/plan/plan_pilot.hpp"
+#include "app/plan/planned_spec.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
@@ -96,9 +96,10 @@ PrecisionTarget target_of(const CalibrateOptions& options, const std::optional<S
   if (options.target_path.empty())
     throw InvalidInput("calibrate: --target-error is that of a prediction; give its PATH with --for");
   if (frame && frame->preparation.drive.quasi_static_step > 0)
-    throw InvalidInput(fmt::format("{}: quasi_static_step: a plan chooses strain rate and time step, which minimised steps "
-                                   "do not have; leave it 0",
-                                   options.spec.string()));
+    throw InvalidInput(
+        fmt::format("{}: quasi_static_step: a plan chooses strain rate and time step, which minimised steps "
+                    "do not have; leave it 0",
+                    options.spec.string()));
   const Path path = read_path(options.target_path).path;
   if (law_decides(path))
     throw InvalidInput(fmt::format("{}: segments: leave the strain to the law; a target needs a path of given strain",

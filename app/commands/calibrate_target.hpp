@@ -8,7 +8,7 @@
 #include "app/commands/calibrate.hpp"
 #include "app/files/dataset.hpp"
 #include "app/files/spec_file.hpp"
-#include "app/target_run.hpp"
+#include "app/plan/target_run.hpp"
 #include "fit/calibrate.hpp"
 
 namespace grainlaw::app {

@@ -7,12 +7,12 @@
 #include <set>
 #include <utility>
 
-#include "app/adopted_dataset.hpp"
 #include "app/digest.hpp"
 #include "app/files/parameters_file.hpp"
 #include "app/files/path_file.hpp"
-#include "app/new_packings.hpp"
 #include "app/output_folder.hpp"
+#include "app/runs/adopted_dataset.hpp"
+#include "app/runs/new_packings.hpp"
 #include "app/uncertainty.hpp"
 #include "model/error.hpp"
 #include "predict/mixed_control.hpp"

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include "app/calibrated_setting.hpp"
-#include "app/files/study_json.hpp"
 #include "app/output_folder.hpp"
-#include "app/report/figure_study.hpp"
-#include "app/spec_settings.hpp"
-#include "app/study_output.hpp"
-#include "app/study_table.hpp"
+#include "app/study/calibrated_setting.hpp"
+#include "app/study/figure_study.hpp"
+#include "app/study/spec_settings.hpp"
+#include "app/study/study_json.hpp"
+#include "app/study/study_output.hpp"
+#include "app/study/study_table.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-constexpr const char* kError =
+constexpr const char* kErrorOfPrediction =
     "root mean square over P_star, s_par, F_par of their differences from the reference's prediction, root mean square "
     "along the path over the largest value";
 
@@ -40,8 +40,8 @@ ExitCode study_chain(const StudyChainOptions& options, Session& session) {
     return outcome;
   };
   const std::vector<SettingOutcome> outcomes = outcomes_of(settings, judged, session, show);
-  const SettingsStudy study =
-      study_of("chain", kError, Packings::chosen, Json(spec_to_json(settings[judged].spec)), outcomes, judged);
+  const SettingsStudy study = study_of("chain", kErrorOfPrediction, Packings::chosen,
+                                       Json(spec_to_json(settings[judged].spec)), outcomes, judged);
   finish_study(options.output, study_to_json(study), "settings.svg", report::figure_of(study), study_table(study),
                session);
   return ExitCode::ok;

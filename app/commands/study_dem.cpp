@@ -2,20 +2,20 @@
 
 #include <fmt/format.h>
 
-#include "app/files/study_json.hpp"
 #include "app/output_folder.hpp"
-#include "app/packing_quantities.hpp"
-#include "app/report/figure_study.hpp"
-#include "app/settings_study.hpp"
-#include "app/spec_settings.hpp"
-#include "app/study_output.hpp"
-#include "app/study_table.hpp"
+#include "app/study/figure_study.hpp"
+#include "app/study/packing_quantities.hpp"
+#include "app/study/settings_study.hpp"
+#include "app/study/spec_settings.hpp"
+#include "app/study/study_json.hpp"
+#include "app/study/study_output.hpp"
+#include "app/study/study_table.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-constexpr const char* kError =
+constexpr const char* kErrorOfPackings =
     "root mean square over P_star, C_star, s_max, beta_s, F_max, beta_F at the densities of shear of the relative "
     "difference from the reference, mean over packings";
 
@@ -35,7 +35,7 @@ ExitCode study_dem(const StudyDemOptions& options, Session& session) {
     const std::vector<std::uint64_t> seeds = packings_of(dataset);
     return {setting.name, setting.changes, cost_of(dataset), seeds, packing_quantities(dataset, seeds), "", ""};
   };
-  const SettingsStudy study = study_of("dem", kError, Packings::given, Json(spec_to_json(base.spec)),
+  const SettingsStudy study = study_of("dem", kErrorOfPackings, Packings::given, Json(spec_to_json(base.spec)),
                                        outcomes_of(settings, 1, session, show), 1);
   finish_study(options.output, study_to_json(study), "settings.svg", report::figure_of(study), study_table(study),
                session);

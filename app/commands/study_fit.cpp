@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "app/adopted_dataset.hpp"
-#include "app/calibrated_setting.hpp"
 #include "app/files/spec_file.hpp"
-#include "app/files/study_json.hpp"
-#include "app/fit_choices.hpp"
 #include "app/output_folder.hpp"
-#include "app/report/figure_study.hpp"
-#include "app/study_output.hpp"
-#include "app/study_table.hpp"
+#include "app/runs/adopted_dataset.hpp"
+#include "app/study/calibrated_setting.hpp"
+#include "app/study/figure_study.hpp"
+#include "app/study/fit_choices.hpp"
+#include "app/study/study_json.hpp"
+#include "app/study/study_output.hpp"
+#include "app/study/study_table.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::app {

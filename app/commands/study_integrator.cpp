@@ -7,8 +7,8 @@
 
 #include "app/files/parameters_file.hpp"
 #include "app/output_folder.hpp"
-#include "app/study_output.hpp"
-#include "app/work_precision.hpp"
+#include "app/study/study_output.hpp"
+#include "app/study/work_precision.hpp"
 #include "model/error.hpp"
 #include "predict/batch.hpp"
 #include "predict/predict.hpp"
@@ -27,15 +27,15 @@ struct BatchTime {
   double seconds;
 };
 
-struct Law {
+struct StudiedLaw {
   LawParameters<double> parameters;
   Coupling coupling = Coupling::energy;
   std::string source;
 };
 
-Law law_of(const StudyIntegratorOptions& options) {
+StudiedLaw law_of(const StudyIntegratorOptions& options) {
   if (options.parameters.empty()) {
-    Law law{published_parameters(), Coupling::energy, "published"};
+    StudiedLaw law{published_parameters(), Coupling::energy, "published"};
     law.parameters.anisotropy.a2 = kMeasuredA2;
     return law;
   }
@@ -57,8 +57,8 @@ std::vector<predict::BatchPath> batch_paths(const LawParameters<double>& paramet
 }
 
 /// The batch by CVODE and by what was quickest on the smooth path.
-std::vector<BatchTime> time_batch(const Law& law, const WorkPrecision& smooth, const StudyIntegratorOptions& options,
-                                  const Session& session) {
+std::vector<BatchTime> time_batch(const StudiedLaw& law, const WorkPrecision& smooth,
+                                  const StudyIntegratorOptions& options, const Session& session) {
   const auto paths = batch_paths(law.parameters, options.paths);
   std::vector<BatchTime> times;
   const Integrator adams = Integrator::adams;
@@ -186,7 +186,7 @@ std::string text_of(const std::vector<WorkPrecision>& studies, const std::vector
 }  // namespace
 
 ExitCode study_integrator(const StudyIntegratorOptions& options, Session& session) {
-  const Law law = law_of(options);
+  const StudiedLaw law = law_of(options);
   make_output_folder(options.output);
   std::vector<WorkPrecision> studies;
   for (const StudyPath& path : study_paths(law.parameters)) {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "app/files/json_document.hpp"
-#include "app/verdicts.hpp"
+#include "app/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
 
 namespace grainlaw::app {

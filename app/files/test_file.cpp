@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/digest.hpp"
-#include "app/engine_path.hpp"
+#include "app/files/engine_path.hpp"
 #include "app/files/path_json.hpp"
 #include "app/files/preparation_json.hpp"
 #include "app/files/schema.hpp"

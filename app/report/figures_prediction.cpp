@@ -20,7 +20,7 @@ struct Predicted {
   double predict::RowBand::*band;
 };
 
-constexpr std::array<Predicted, 3> kQuantities{
+constexpr std::array<Predicted, 3> kPredicted{
     {{"pressure {P}* [–]", "law − DEM: {P}* [–]", &Observation::P_star,
       [](const PredictedRow& row) { return row.state.P; }, &predict::RowBand::P},
      {"stress ratio {s}_{∥} [–]", "law − DEM: {s}_{∥} [–]", &Observation::s_par,
@@ -194,10 +194,10 @@ Figure prediction_figure(const PredictionFolder& prediction, std::size_t index) 
   figure.panel_height = dem.empty() ? 250 : 210;
 
   const Abscissa abscissa = abscissa_of(prediction, dem);
-  for (const Predicted& quantity : kQuantities)
+  for (const Predicted& quantity : kPredicted)
     figure.panels.push_back(value_panel(prediction, dem, quantity, abscissa));
   if (!dem.empty()) {
-    for (const Predicted& quantity : kQuantities) {
+    for (const Predicted& quantity : kPredicted) {
       figure.panels.push_back(difference_panel(prediction, dem, quantity, abscissa));
     }
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/files/prediction_files.hpp"
-#include "app/verdicts.hpp"
+#include "app/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
 #include "model/test_record.hpp"
 
@@ -23,7 +23,7 @@ struct ReportInput {
   std::vector<TestRecord> tests;  ///< data set, calibration and validation
   std::vector<RunCost> costs;     ///< of the tests, in their order
   fit::Calibration calibration;
-  ModeComparison modes;  ///< beside what was published
+  ModeComparison modes;                       ///< beside what was published
   std::vector<PredictionFolder> predictions;  ///< by name
   std::vector<Fact> provenance;               ///< commands, versions, seconds
   std::vector<Fact> spec;                     ///< of the data set, resolved; empty when unknown

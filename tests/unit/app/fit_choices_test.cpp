@@ -1,10 +1,10 @@
-#include "app/fit_choices.hpp"
+#include "app/study/fit_choices.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "app/settings_study.hpp"
+#include "app/study/settings_study.hpp"
 #include "fit/data_set.hpp"
 #include "model/error.hpp"
 #include "tests/support/study_dataset.hpp"

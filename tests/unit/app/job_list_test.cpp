@@ -1,4 +1,4 @@
-#include "app/job_list.hpp"
+#include "app/runs/job_list.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@ namespace {
 
 using testing::refusal;
 
-std::string refusal_of(const std::string& text, JsonSource source = JsonSource::user) {
+std::string json_refusal(const std::string& text, JsonSource source = JsonSource::user) {
   return refusal([&] { parse_json(text, "x.json", source); });
 }
 
@@ -29,20 +29,20 @@ TEST(JsonDocument, TakesWholeNumbersOfUsersAsIntegers) {
 
 // Hard case S1.
 TEST(JsonDocument, RefusesHostileTextWithPlaceAndReason) {
-  EXPECT_NE(refusal_of(R"({"a": {"b": [1, NaN]}})").find("x.json: a.b[1]: "), std::string::npos)
-      << refusal_of(R"({"a": {"b": [1, NaN]}})");
-  EXPECT_NE(refusal_of(R"({"nu": 1e309})").find("x.json: nu: "), std::string::npos);
-  EXPECT_EQ(refusal_of(R"({"nu": -0})"), "x.json: nu: negative zero is refused; write 0");
-  EXPECT_EQ(refusal_of(R"({"nu": -0.0})"), "x.json: nu: negative zero is refused; write 0");
-  EXPECT_EQ(refusal_of(R"({"a": {"b": 1, "b": 2}})"), "x.json: a.b: is given twice; keep one");
-  EXPECT_EQ(refusal_of(R"([{"b": 1, "b": 2}])"), "x.json: [0].b: is given twice; keep one");
-  EXPECT_NE(refusal_of("\xEF\xBB\xBF{}").find("byte order mark"), std::string::npos);
-  EXPECT_NE(refusal_of("{\"a\": \"\xff\"}").find("UTF-8"), std::string::npos);
-  EXPECT_NE(refusal_of(std::string("{}\0", 3)).find("x.json: "), std::string::npos);
+  EXPECT_NE(json_refusal(R"({"a": {"b": [1, NaN]}})").find("x.json: a.b[1]: "), std::string::npos)
+      << json_refusal(R"({"a": {"b": [1, NaN]}})");
+  EXPECT_NE(json_refusal(R"({"nu": 1e309})").find("x.json: nu: "), std::string::npos);
+  EXPECT_EQ(json_refusal(R"({"nu": -0})"), "x.json: nu: negative zero is refused; write 0");
+  EXPECT_EQ(json_refusal(R"({"nu": -0.0})"), "x.json: nu: negative zero is refused; write 0");
+  EXPECT_EQ(json_refusal(R"({"a": {"b": 1, "b": 2}})"), "x.json: a.b: is given twice; keep one");
+  EXPECT_EQ(json_refusal(R"([{"b": 1, "b": 2}])"), "x.json: [0].b: is given twice; keep one");
+  EXPECT_NE(json_refusal("\xEF\xBB\xBF{}").find("byte order mark"), std::string::npos);
+  EXPECT_NE(json_refusal("{\"a\": \"\xff\"}").find("UTF-8"), std::string::npos);
+  EXPECT_NE(json_refusal(std::string("{}\0", 3)).find("x.json: "), std::string::npos);
   for (const char* broken :
        {"", "{", "[1,]", "{\"a\":}", "{} {}", "// c\n{}", "'a'", "01", "+1", ".5", "Infinity", "{\"a\" 1}"}) {
-    EXPECT_NE(refusal_of(broken), "accepted") << broken;
-    EXPECT_EQ(refusal_of(broken).find('\n'), std::string::npos) << broken;
+    EXPECT_NE(json_refusal(broken), "accepted") << broken;
+    EXPECT_EQ(json_refusal(broken).find('\n'), std::string::npos) << broken;
   }
 }
 
@@ -50,13 +50,13 @@ TEST(JsonDocument, LimitsNestingWhileParsing) {
   const auto nested = [](int n) {
     return std::string(static_cast<std::size_t>(n), '[') + std::string(static_cast<std::size_t>(n), ']');
   };
-  EXPECT_EQ(refusal_of(nested(kMaxJsonDepth)), "accepted");
-  EXPECT_NE(refusal_of(nested(kMaxJsonDepth + 1)).find("nested deeper"), std::string::npos);
+  EXPECT_EQ(json_refusal(nested(kMaxJsonDepth)), "accepted");
+  EXPECT_NE(json_refusal(nested(kMaxJsonDepth + 1)).find("nested deeper"), std::string::npos);
   const auto began = std::chrono::steady_clock::now();
-  EXPECT_NE(refusal_of(std::string(512000, '[')).find("nested deeper"), std::string::npos);
+  EXPECT_NE(json_refusal(std::string(512000, '[')).find("nested deeper"), std::string::npos);
   std::string objects;
   for (int i = 0; i < 100000; ++i) objects += "{\"a\":";
-  EXPECT_NE(refusal_of(objects).find("nested deeper"), std::string::npos);
+  EXPECT_NE(json_refusal(objects).find("nested deeper"), std::string::npos);
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(), 0.1);
 }
 

@@ -1,4 +1,4 @@
-#include "app/key_changes.hpp"
+#include "app/study/key_changes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "app/law_quantities.hpp"
+#include "app/study/law_quantities.hpp"
 
 #include <gtest/gtest.h>
 

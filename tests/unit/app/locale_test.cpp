@@ -1,52 +1,21 @@
 // Hard case F12: calibrate -> JSON -> predict keeps every double, also where numbers are written 1.234,5.
 #include <algorithm>
-#include <clocale>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <locale>
 
 #include "app/files/dataset.hpp"
 #include "app/files/parameters_file.hpp"
 #include "app/files/series_columns.hpp"
 #include "app/files/series_csv.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/german_locale.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-struct GermanNumbers : std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-  char do_thousands_sep() const override { return '.'; }
-  std::string do_grouping() const override { return "\3"; }
-};
-
-/// German numbers in C++ streams, and in the C library where the locale can be made.
-class GermanLocale {
- public:
-  explicit GermanLocale(const std::filesystem::path& folder)
-      : earlier_(std::locale::global(std::locale(std::locale::classic(), new GermanNumbers))) {
-    const std::string make =
-        fmt::format("localedef -i de_DE -f UTF-8 '{}/de_DE.UTF-8' >/dev/null 2>&1", folder.string());
-    if (std::system(make.c_str()) == 0) setenv("LOCPATH", folder.c_str(), 1);
-    in_c_ = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
-  }
-  ~GermanLocale() {
-    std::setlocale(LC_ALL, "C");
-    unsetenv("LOCPATH");
-    std::locale::global(earlier_);
-  }
-  GermanLocale(const GermanLocale&) = delete;
-  GermanLocale& operator=(const GermanLocale&) = delete;
-
-  bool in_c() const { return in_c_; }
-
- private:
-  std::locale earlier_;
-  bool in_c_ = false;
-};
+using testing::GermanLocale;
 
 bool differ(double a, double b) { return std::memcmp(&a, &b, sizeof a) != 0 && !(std::isnan(a) && std::isnan(b)); }
 

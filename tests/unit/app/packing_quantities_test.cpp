@@ -1,4 +1,4 @@
-#include "app/packing_quantities.hpp"
+#include "app/study/packing_quantities.hpp"
 
 #include <gtest/gtest.h>
 

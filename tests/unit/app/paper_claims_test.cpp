@@ -1,4 +1,4 @@
-#include "app/paper_claims.hpp"
+#include "app/published/paper_claims.hpp"
 
 #include <gtest/gtest.h>
 

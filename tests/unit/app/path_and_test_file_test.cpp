@@ -5,7 +5,7 @@
 #include "app/files/path_json.hpp"
 #include "app/files/spec_file.hpp"
 #include "app/files/test_file.hpp"
-#include "app/new_packings.hpp"
+#include "app/runs/new_packings.hpp"
 #include "dem/state_file.hpp"
 
 #include "tests/support/temporary_folder.hpp"

@@ -1,5 +1,5 @@
 // Probes along a test: they do not change it, survive its interruptions, and are where they are asked for.
-#include "app/path_probes.hpp"
+#include "app/runs/path_probes.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "app/files/csv_table.hpp"
-#include "app/run_store.hpp"
-#include "app/runs.hpp"
+#include "app/runs/run_store.hpp"
+#include "app/runs/runs.hpp"
 #include "dem/state_file.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-#include "app/files/plan_file.hpp"
+#include "app/plan/plan_file.hpp"
 
 #include <gtest/gtest.h>
 

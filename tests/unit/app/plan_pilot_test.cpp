@@ -1,4 +1,4 @@
-#include "app/plan_pilot.hpp"
+#include "app/plan/plan_pilot.hpp"
 
 #include <gtest/gtest.h>
 

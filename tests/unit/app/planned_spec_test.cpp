@@ -1,10 +1,10 @@
-#include "app/planned_spec.hpp"
+#include "app/plan/planned_spec.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "app/dataset_runs.hpp"
+#include "app/runs/dataset_runs.hpp"
 
 namespace grainlaw::app {
 namespace {

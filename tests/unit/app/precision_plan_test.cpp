@@ -1,4 +1,4 @@
-#include "app/precision_plan.hpp"
+#include "app/plan/precision_plan.hpp"
 
 #include <gtest/gtest.h>
 

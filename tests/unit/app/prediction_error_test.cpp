@@ -1,4 +1,4 @@
-#include "app/prediction_error.hpp"
+#include "app/plan/prediction_error.hpp"
 
 #include <gtest/gtest.h>
 

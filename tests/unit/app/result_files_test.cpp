@@ -1,7 +1,7 @@
 // Data set, parameters, calibration and prediction: written, read back equal, refused when damaged. F12.
 #include <cmath>
 #include <cstring>
-#include <locale>
+#include <utility>
 
 #include "app/digest.hpp"
 #include "app/files/calibration_file.hpp"
@@ -10,6 +10,7 @@
 #include "app/files/prediction_files.hpp"
 #include "app/files/series_csv.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/german_locale.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -200,32 +201,27 @@ TEST_F(ResultFiles, ParametersAreReadBackBitForBit) {
 }
 
 /// A locale whose numbers look like "1.234,5".
-struct GermanNumbers : std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-  char do_thousands_sep() const override { return '.'; }
-  std::string do_grouping() const override { return "\3"; }
-};
-
-// Hard case F12, as under LC_ALL=de_DE.
+// Hard case F12.
 TEST_F(ResultFiles, F12DoNotDependOnTheLocale) {
   const fit::Calibration c = odd_calibration();
   write_parameters(folder_ / "plain.json", {c, "", {}});
-  const std::locale earlier = std::locale::global(std::locale(std::locale::classic(), new GermanNumbers));
-  const bool installed = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
-  write_parameters(folder_ / "german.json", {c, "", {}});
-  const ParametersFile read = read_parameters(folder_ / "plain.json");
-  const Dataset written = small_dataset(folder_);
-  const Dataset dataset = read_dataset(folder_);
-  std::setlocale(LC_ALL, "C");
-  std::locale::global(earlier);
-  if (!installed) GTEST_LOG_(INFO) << "de_DE.UTF-8 is not installed; only the C++ locale was changed";
+  ParametersFile read;
+  Dataset written, dataset;
+  {
+    const testing::GermanLocale german(folder_);
+    if (!german.in_c()) GTEST_LOG_(INFO) << "no German locale could be made; only the C++ locale was changed";
+    write_parameters(folder_ / "german.json", {c, "", {}});
+    read = read_parameters(folder_ / "plain.json");
+    written = small_dataset(folder_);
+    dataset = read_dataset(folder_);
+  }
   const std::string plain = content(folder_ / "plain.json"), german = content(folder_ / "german.json");
   ASSERT_EQ(plain.size(), german.size());
   int differing = 0;
   for (std::size_t i = 0; i < plain.size(); ++i) differing += plain[i] != german[i] ? 1 : 0;
   testing::expect_figure("F12.differing_characters_of_parameters", differing, 0);
   differing = 0;
-  const auto written_fields = fields(c.parameters), read_fields = fields(read.calibration.parameters);
+  const auto written_fields = fields(c.parameters), read_fields = fields(std::as_const(read).calibration.parameters);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const bool has_value = c.estimates[i].status != fit::Status::not_identified;
     if (has_value && std::memcmp(written_fields[i], read_fields[i], sizeof(double)) != 0) ++differing;

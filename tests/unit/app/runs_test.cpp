@@ -1,15 +1,15 @@
 // Content-addressed runs: keys, store, and the two kinds of run with very small packings.
-#include "app/runs.hpp"
+#include "app/runs/runs.hpp"
 
 #include <map>
 #include <thread>
 
-#include "app/dataset_runs.hpp"
 #include "app/digest.hpp"
 #include "app/files/preparation_json.hpp"
 #include "app/files/series_csv.hpp"
-#include "app/new_packings.hpp"
-#include "app/preparation_folder.hpp"
+#include "app/runs/dataset_runs.hpp"
+#include "app/runs/new_packings.hpp"
+#include "app/runs/preparation_folder.hpp"
 #include "dem/state_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -79,7 +79,8 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
   EXPECT_NE(run_key(test_request({tiny(), 21, {}, "", false}, d2())), test_key(tiny(), d2()));
   more = tiny();
   more.rows = 77;  // of the branches
-  EXPECT_EQ(run_key(test_request({more, 20, {}, "", false}, d2())), run_key(test_request({tiny(), 20, {}, "", false}, d2())));
+  EXPECT_EQ(run_key(test_request({more, 20, {}, "", false}, d2())),
+            run_key(test_request({tiny(), 20, {}, "", false}, d2())));
   dem::PreparationOptions minimised = tiny();
   minimised.drive.quasi_static_step = more.drive.quasi_static_step = 1e-3;  // rows of the branches cut its steps
   EXPECT_NE(run_key(test_request({more, 20, {}, "", false}, d2())),

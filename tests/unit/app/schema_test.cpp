@@ -11,37 +11,37 @@ namespace {
 
 using testing::refusal;
 
-std::string refusal_of(const std::string& text, Schema which = Schema::spec) {
+std::string schema_refusal(const std::string& text, Schema which = Schema::spec) {
   return refusal([&] { check_schema(parse_json(text, "s.json", JsonSource::user), which, "s.json"); });
 }
 
 TEST(SchemaCheck, AcceptsWhatIsDocumented) {
-  EXPECT_EQ(refusal_of("{}"), "accepted");
-  EXPECT_EQ(refusal_of(R"({"particles": 100, "tests": [{"mode": "D2", "density": "all", "role": "calibration"},
+  EXPECT_EQ(schema_refusal("{}"), "accepted");
+  EXPECT_EQ(schema_refusal(R"({"particles": 100, "tests": [{"mode": "D2", "density": "all", "role": "calibration"},
                           {"mode": "D2", "density": [0.7], "role": "validation"}, {"mode": "D2", "density": 0.7, "role": "validation"}]})"),
             "accepted");
 }
 
 TEST(SchemaCheck, NamesFileKeyReasonAndRemedyInOneLine) {
-  EXPECT_EQ(refusal_of(R"({"particles": 1e18})"),
+  EXPECT_EQ(schema_refusal(R"({"particles": 1e18})"),
             "s.json: particles: got 1000000000000000000; give an integer >= 1 and <= 10000000 (number of spheres of a "
             "packing)");
   EXPECT_EQ(
-      refusal_of(R"({"mean_radius": -0.001})"),
+      schema_refusal(R"({"mean_radius": -0.001})"),
       "s.json: mean_radius: got -0.001; give a number >= 1e-09 and <= 1000.0 (mean of the size distribution [m])");
-  EXPECT_EQ(refusal_of(R"({"particle": 5})"), "s.json: unknown key 'particle'; did you mean 'particles'?");
-  EXPECT_NE(refusal_of(R"({"xyzzy": 5})").find("s.json: unknown key 'xyzzy'; known keys: background_viscosity, "),
+  EXPECT_EQ(schema_refusal(R"({"particle": 5})"), "s.json: unknown key 'particle'; did you mean 'particles'?");
+  EXPECT_NE(schema_refusal(R"({"xyzzy": 5})").find("s.json: unknown key 'xyzzy'; known keys: background_viscosity, "),
             std::string::npos);
-  EXPECT_EQ(refusal_of(R"({"tests": [{"mode": "D2"}]})"),
+  EXPECT_EQ(schema_refusal(R"({"tests": [{"mode": "D2"}]})"),
             "s.json: tests[0]: misses the key 'role'; give calibration tests are fitted, validation tests never, "
             "description tests "
             "by laws of their own");
-  EXPECT_EQ(refusal_of(R"({"driving": "sine"})"),
+  EXPECT_EQ(schema_refusal(R"({"driving": "sine"})"),
             "s.json: driving: got \"sine\"; give \"cosine\" or \"constant\" (profile of the strain rate in time)");
   EXPECT_EQ(
-      refusal_of(R"({"seeds": [1, 1]})"),
+      schema_refusal(R"({"seeds": [1, 1]})"),
       "s.json: seeds: got [1,1]; give an array of 1 to 1000 different elements (seeds of the packings, all different)");
-  EXPECT_EQ(refusal_of("[]"), "s.json: got []; give an object (an object; every key may be left out)");
+  EXPECT_EQ(schema_refusal("[]"), "s.json: got []; give an object (an object; every key may be left out)");
 }
 
 TEST(SchemaCheck, RefusesWrongTypesEverywhere) {
@@ -67,7 +67,7 @@ TEST(SchemaCheck, RefusesWrongTypesEverywhere) {
                            R"({"tests": [{"name": "../x", "mode": "D2", "role": "calibration"}]})",
                            R"({"tests": [{"name": "a\nb", "mode": "D2", "role": "calibration"}]})",
                            R"({"tests": [{"mode": "D2", "strain": -0.1, "role": "calibration"}]})"}) {
-    const std::string message = refusal_of(text);
+    const std::string message = schema_refusal(text);
     EXPECT_TRUE(message.starts_with("s.json: ")) << text << " -> " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << text;
   }
@@ -78,7 +78,7 @@ double cost_of(int densities) {
   std::string text = "{\"densities\": [";
   for (int i = 1; i < densities; ++i) text += "0.7,";
   const std::clock_t began = std::clock();
-  EXPECT_NE(refusal_of(text + "0.7]}").find("densities"), std::string::npos);
+  EXPECT_NE(schema_refusal(text + "0.7]}").find("densities"), std::string::npos);
   return static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
 }
 

@@ -1,4 +1,4 @@
-#include "app/settings_study.hpp"
+#include "app/study/settings_study.hpp"
 
 #include <gtest/gtest.h>
 

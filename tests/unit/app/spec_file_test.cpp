@@ -11,7 +11,7 @@ namespace {
 using testing::refusal;
 
 Spec spec(const std::string& text) { return spec_from_json(parse_json(text, "s.json", JsonSource::user), "s.json"); }
-std::string refusal_of(const std::string& text) {
+std::string spec_refusal(const std::string& text) {
   return refusal([&] { spec(text); });
 }
 
@@ -39,13 +39,13 @@ TEST(SpecFile, TestsMayAskForProbes) {
   EXPECT_FALSE(spec_to_json(s)["tests"][2].contains("probes"));
 
   const auto probes = [](const std::string& object) {
-    return refusal_of(R"({"tests": [{"mode": "D2", "role": "calibration", "probes": )" + object + "}]}");
+    return spec_refusal(R"({"tests": [{"mode": "D2", "role": "calibration", "probes": )" + object + "}]}");
   };
   EXPECT_NE(probes("{}").find("tests[0].probes"), std::string::npos);
   EXPECT_NE(probes(R"({"every": 0})").find("tests[0].probes.every"), std::string::npos);
   EXPECT_NE(probes(R"({"every": 0.1, "step": 0.5})").find("tests[0].probes.step"), std::string::npos);
   EXPECT_NE(probes(R"({"every": 0.1, "step": []})").find("tests[0].probes.step"), std::string::npos);
-  EXPECT_NE(refusal_of(R"({"tests": [{"mode": "ISO", "role": "calibration", "probes": {"every": 0.05}}]})")
+  EXPECT_NE(spec_refusal(R"({"tests": [{"mode": "ISO", "role": "calibration", "probes": {"every": 0.05}}]})")
                 .find("tests[0].probes: ISO is the preparation's own branch"),
             std::string::npos);
 }
@@ -120,39 +120,39 @@ TEST(SpecFile, TestsBecomePathsAndNames) {
 }
 
 TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
-  EXPECT_EQ(refusal_of(R"({"densities": [0.85]})"),
+  EXPECT_EQ(spec_refusal(R"({"densities": [0.85]})"),
             "s.json: densities: 0.85 is not on the unloading branch [nu_end, nu_max] = [0.66, 0.82]");
-  EXPECT_EQ(refusal_of(R"({"nu_start": 0.7, "nu_max": 0.69})"), "s.json: nu_max: 0.69 must lie above nu_start = 0.7");
-  EXPECT_NE(refusal_of(R"({"nu_end": 0.63})").find("s.json: nu_end: "), std::string::npos);
-  EXPECT_NE(refusal_of(R"({"contact_viscosity": 1e6})").find("s.json: contact_viscosity: "), std::string::npos);
-  EXPECT_NE(refusal_of(R"({"strain_rate": 1e-6})").find("s.json: strain_rate: "),
+  EXPECT_EQ(spec_refusal(R"({"nu_start": 0.7, "nu_max": 0.69})"), "s.json: nu_max: 0.69 must lie above nu_start = 0.7");
+  EXPECT_NE(spec_refusal(R"({"nu_end": 0.63})").find("s.json: nu_end: "), std::string::npos);
+  EXPECT_NE(spec_refusal(R"({"contact_viscosity": 1e6})").find("s.json: contact_viscosity: "), std::string::npos);
+  EXPECT_NE(spec_refusal(R"({"strain_rate": 1e-6})").find("s.json: strain_rate: "),
             std::string::npos);  // S2: steps without end
-  EXPECT_NE(refusal_of(R"({"tests": [{"role": "calibration"}]})").find("s.json: tests[0]: misses what to do"),
+  EXPECT_NE(spec_refusal(R"({"tests": [{"role": "calibration"}]})").find("s.json: tests[0]: misses what to do"),
             std::string::npos);
-  EXPECT_NE(refusal_of(R"({"tests": [{"mode": "ISO", "density": 0.7, "role": "calibration"}]})")
+  EXPECT_NE(spec_refusal(R"({"tests": [{"mode": "ISO", "density": 0.7, "role": "calibration"}]})")
                 .find("s.json: tests[0].density: "),
             std::string::npos);
   EXPECT_NE(
-      refusal_of(
+      spec_refusal(
           R"({"tests": [{"mode": "D2", "role": "calibration"}, {"mode": "D2", "density": 0.7, "role": "validation"}]})")
           .find("s.json: tests[1].name: 'D2'"),
       std::string::npos);
   EXPECT_NE(
-      refusal_of(
+      spec_refusal(
           R"({"tests": [{"segments": [{"mode": "ISO", "extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
           .find("s.json: tests[0]: at nu = 0.7: segments[0].extent"),
       std::string::npos);
   EXPECT_NE(
-      refusal_of(R"({"tests": [{"segments": [{"extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
+      spec_refusal(R"({"tests": [{"segments": [{"extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
           .find("s.json: tests[0].segments[0]: misses its direction"),
       std::string::npos);
   EXPECT_NE(
-      refusal_of(
+      spec_refusal(
           R"({"tests": [{"segments": [{"rate_tensor": [[1,0.5,0],[0.5,-1,0],[0,0,0]], "extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
           .find("s.json: tests[0]"),
       std::string::npos);  // the engine deforms along the axes only
   EXPECT_EQ(
-      refusal_of(
+      spec_refusal(
           R"({"tests": [{"mode": "D2", "density": 0.7, "role": "calibration"}, {"name": "again", "mode": "D2", "density": 0.7, "role": "validation"}]})"),
       "accepted");
 }

@@ -1,4 +1,4 @@
-#include "app/spec_settings.hpp"
+#include "app/study/spec_settings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "app/files/schema.hpp"
-#include "app/files/study_json.hpp"
-#include "app/report/figure_study.hpp"
 #include "app/report/svg_figure.hpp"
-#include "app/study_table.hpp"
+#include "app/study/figure_study.hpp"
+#include "app/study/study_json.hpp"
+#include "app/study/study_table.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::app {

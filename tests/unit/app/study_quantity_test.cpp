@@ -1,4 +1,4 @@
-#include "app/study_quantity.hpp"
+#include "app/study/study_quantity.hpp"
 
 #include <gtest/gtest.h>
 

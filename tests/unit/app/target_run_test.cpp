@@ -1,4 +1,4 @@
-#include "app/target_run.hpp"
+#include "app/plan/target_run.hpp"
 
 #include <gtest/gtest.h>
 

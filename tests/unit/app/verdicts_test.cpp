@@ -1,4 +1,4 @@
-#include "app/verdicts.hpp"
+#include "app/published/verdicts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,20 @@
+#include "app/files/engine_path.hpp"
+
+#include <fmt/format.h>
+
+#include "dem/drive.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+
+std::vector<StraightSegment> engine_path(const Path& path, const std::string& name) {
+  try {
+    std::vector<StraightSegment> segments = resolve(path);
+    dem::check_can_follow(segments);
+    return segments;
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", name, error.what()));
+  }
+}
+
+}  // namespace grainlaw::app

@@ -1,0 +1,47 @@
+#include "app/runs/checkpoint_files.hpp"
+
+#include <fmt/format.h>
+
+#include "app/runs/run_store.hpp"
+#include "model/error.hpp"
+
+namespace grainlaw::app {
+
+namespace fs = std::filesystem;
+
+CheckpointFiles::CheckpointFiles(fs::path folder, std::string key, const ResumePolicy& policy)
+    : folder_(std::move(folder)), key_(std::move(key)), policy_(policy) {}
+
+std::optional<dem::Checkpoint> CheckpointFiles::load() const {
+  for (const char* name : {kCheckpoint, kPreviousCheckpoint}) {
+    const fs::path file = folder_ / name;
+    if (!fs::exists(file)) continue;
+    try {
+      dem::Checkpoint checkpoint = dem::read_checkpoint(file);
+      if (checkpoint.state.digest != key_) throw InvalidInput(fmt::format("{}: is of another run", file.string()));
+      if (policy_.log)
+        policy_.log(fmt::format("goes on from the checkpoint at step {}", checkpoint.steps_before + checkpoint.steps));
+      return checkpoint;
+    } catch (const InvalidInput& why) {
+      if (policy_.log) policy_.log(fmt::format("checkpoint not taken: {}", why.what()));
+      fs::remove(file);
+    }
+  }
+  return std::nullopt;
+}
+
+dem::Checkpointing CheckpointFiles::checkpointing() const {
+  return {[this](const dem::Checkpoint& checkpoint) { save(checkpoint); }, policy_.checkpoint_interval};
+}
+
+void CheckpointFiles::save(const dem::Checkpoint& checkpoint) const {
+  const fs::path file = folder_ / kCheckpoint;
+  std::error_code failure;
+  if (fs::exists(file, failure)) fs::rename(file, folder_ / kPreviousCheckpoint, failure);
+  if (failure) throw Error(fmt::format("{}: cannot be put aside: {}", file.string(), failure.message()));
+  dem::Checkpoint named = checkpoint;
+  named.state.digest = key_;
+  dem::write_checkpoint(file, named);
+}
+
+}  // namespace grainlaw::app

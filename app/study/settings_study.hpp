@@ -1,0 +1,70 @@
+#pragma once
+// What settings cost, and how far their results are from those of a reference. Over the quantities of a setting,
+//   error^2    = mean of their squared errors            floor^2    = mean of their squared standard errors
+//   sampling^2 = mean of their squared 95 % intervals    reached^2  = max(error^2 - floor^2, 0) + noise^2
+// error^2 - floor^2 estimates the square of what the setting itself does. The noise that comes on top is the floor where all
+// settings have the same packings, of which only differences count, and sampling where packings are chosen, too: the interval
+// is all that users of the setting have, and few packings do not know their own scatter (two: t = 12.7). Nor does a time step or
+// a rate change how packings scatter: among settings that differ only in how they compute, sampling is pooled (root mean square),
+// lest a setting dominate by a scatter that happens to come out small. Costs are counted in particle-steps; seconds are beside
+// them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/files/dataset.hpp"
+#include "app/study/key_changes.hpp"
+#include "app/study/study_quantity.hpp"
+
+namespace grainlaw::app {
+
+enum class Packings {
+  given,   ///< the same at every setting
+  chosen,  ///< their number, too, belongs to a setting
+};
+
+struct Cost {
+  double particle_steps = 0;  ///< of all runs
+  double seconds = 0;         ///< likewise, of one thread [s]
+  double fit_seconds = 0;     ///< of the fit, of all threads; 0: there is none [s]
+};
+
+/// Of the calibration tests; a run that gave several of them counts once.
+Cost cost_of(const Dataset& dataset);
+
+/// Seeds of the calibration tests, ascending.
+std::vector<std::uint64_t> packings_of(const Dataset& dataset);
+
+/// What a setting has shown.
+struct SettingOutcome {
+  std::string name;  ///< "base", "reference", "time_step_fraction=0.2", ...
+  Changes changes;   ///< of the base
+  Cost cost;
+  std::vector<std::uint64_t> seeds;  ///< of the packings, in the order of the influence's columns
+  std::vector<StudyQuantity> quantities;
+  std::string model;  ///< rung of the law that predicts; empty: none does
+  std::string note;   ///< what went wrong; may be empty
+};
+
+struct SettingResult {
+  SettingOutcome outcome;
+  std::vector<QuantityError> errors;                                  ///< the reference's quantities
+  double error = 0, floor = 0, sampling = 0, noise = 0, reached = 0;  ///< NaN where it shows none of them [-]
+  std::vector<std::string> dominated_by;                              ///< settings that cost less and reach as much
+};
+
+struct SettingsStudy {
+  std::string kind;   ///< "dem", "chain", "fit"
+  std::string error;  ///< what an error is, in words
+  Packings packings = Packings::given;
+  Json base;               ///< what the changes are changes of
+  std::size_t judged = 0;  ///< the default among `results`; those before it are a reference only
+  std::vector<SettingResult> results;
+};
+
+/// Compares with the first of `outcomes`, and finds who dominates whom; a reference that is not judged takes no part.
+SettingsStudy study_of(const std::string& kind, const std::string& error, Packings packings, const Json& base,
+                       const std::vector<SettingOutcome>& outcomes, std::size_t judged);
+
+}  // namespace grainlaw::app

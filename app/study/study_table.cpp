@@ -1,0 +1,46 @@
+#include "app/study/study_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/one_line.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+constexpr std::size_t kNote = 120;  // characters; study.json has them all
+
+std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.2f}%", 100 * share) : "-"; }
+
+std::string line_of(const SettingResult& r, std::size_t width) {
+  const SettingOutcome& o = r.outcome;
+  std::string text = fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8}", o.name, width,
+                                 o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds,
+                                 percent(r.error), percent(r.floor), percent(r.sampling), percent(r.reached));
+  if (!r.dominated_by.empty()) text += "  dominated";
+  if (!o.model.empty()) text += "  " + o.model;
+  if (!o.note.empty()) text += "  " + one_line(o.note, kNote);
+  return text + "\n";
+}
+
+std::string verdict_of(const SettingResult& judged) {
+  if (!std::isfinite(judged.reached)) return fmt::format("{} shows nothing to be judged by\n", judged.outcome.name);
+  if (judged.dominated_by.empty()) return fmt::format("{} is not dominated\n", judged.outcome.name);
+  return fmt::format("{} is dominated by {}\n", judged.outcome.name, fmt::join(judged.dominated_by, ", "));
+}
+
+}  // namespace
+
+std::string study_table(const SettingsStudy& study) {
+  std::size_t width = 7;
+  for (const SettingResult& r : study.results) width = std::max(width, r.outcome.name.size());
+  std::string text =
+      fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
+                  "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached");
+  for (const SettingResult& r : study.results) text += line_of(r, width);
+  return text + verdict_of(study.results.at(study.judged));
+}
+
+}  // namespace grainlaw::app
