@@ -9,7 +9,7 @@
 namespace grainlaw::dem {
 namespace {
 
-State backbone(double nu, std::uint64_t seed) {
+State hundred_at_rest(double nu, std::uint64_t seed) {
   scene::Draw draw(seed);
   State state = scene::random_state(100, 3, nu, scene::cubic(1), draw);
   EXPECT_TRUE(relax(state, {}, {}, {}).relaxed);
@@ -26,7 +26,7 @@ double residual(const State& state) {
 
 TEST(Balance, NewtonsStepsReachRounding) {
   for (const double nu : {0.68, 0.75, 0.82}) {
-    State state = backbone(nu, 5);
+    State state = hundred_at_rest(nu, 5);
     const Balance result = balance(state, {}, {});
     EXPECT_TRUE(result.reached) << "nu = " << nu;
     EXPECT_EQ(result.passes, 0) << "nu = " << nu;

@@ -5,10 +5,10 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(ContactLaw, MassOfASphere) {
-  EXPECT_DOUBLE_EQ(sphere_mass({2000, 1e8, 1, 0.1}, 1e-3), 4.0 / 3.0 * kPi * 1e-9 * 2000);
+  EXPECT_DOUBLE_EQ(sphere_mass({2000, 1e8, 1, 0.1}, 1e-3), 4.0 / 3.0 * pi * 1e-9 * 2000);
 }
 
 TEST(ContactLaw, ReducedMass) {
@@ -33,7 +33,7 @@ TEST(ContactLaw, NumbersOfThePaper) {
 TEST(ContactLaw, UndampedCollisionIsHalfAPeriodAndElastic) {
   const Material m{2000, 1e8, 0, 0};
   const double m_ij = 4e-6;
-  EXPECT_DOUBLE_EQ(collision_time(m, m_ij), kPi * std::sqrt(m_ij / 1e8));
+  EXPECT_DOUBLE_EQ(collision_time(m, m_ij), pi * std::sqrt(m_ij / 1e8));
   EXPECT_EQ(restitution(m, m_ij), 1);
 }
 

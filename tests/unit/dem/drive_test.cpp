@@ -12,7 +12,7 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 const Eigen::Matrix3d kCell = Eigen::Vector3d(9e-3, 10e-3, 11e-3).asDiagonal();
 
@@ -30,7 +30,7 @@ TEST(Drive, CosineMovesTheCompressedEdge) {
     const Drive drive = drive_of(mode, false, 0.2);
     const double z_0 = kCell(2, 2), z_f = z_0 * std::exp(-0.2);
     for (const double u : {0.0, 0.1, 0.5, 0.77, 1.0}) {
-      const double z = z_f + (z_0 - z_f) / 2 * (1 + std::cos(kPi * u));
+      const double z = z_f + (z_0 - z_f) / 2 * (1 + std::cos(pi * u));
       EXPECT_NEAR(motion_at(drive, u * drive.duration).H(2, 2), z, 1e-15 * z_0) << to_string(mode) << " at " << u;
     }
   }
@@ -85,7 +85,7 @@ TEST(Drive, DurationFollowsFromThePeakRate) {
   const DriveOptions options;
   for (const auto& [mode, g] :
        {std::pair{Mode::ISO, 3.0}, {Mode::UNI, 1.0}, {Mode::D2, std::sqrt(3.0)}, {Mode::D3, 1.5}}) {
-    EXPECT_NEAR(drive_of(mode, false, 0.1).duration, kPi / 2 * g * 0.1 / options.strain_rate, 1e-16);
+    EXPECT_NEAR(drive_of(mode, false, 0.1).duration, pi / 2 * g * 0.1 / options.strain_rate, 1e-16);
     EXPECT_NEAR(drive_of(mode, false, 0.1, Profile::constant).duration, g * 0.1 / options.strain_rate, 1e-16);
   }
   // For small strain the logarithmic rate is the cosine's own, with its peak at the middle.
@@ -102,12 +102,12 @@ TEST(Drive, PeakRateOfThePaper) {
   const double length = std::log(0.82 / 0.64);
   StraightSegment segment = scene::segment_of(direction_of(Mode::UNI).tensor, length, 0.64);
   DriveOptions options;
-  options.strain_rate = kPi / 2 * length / 2500e-6;  // so that tau = T/2
+  options.strain_rate = pi / 2 * length / 2500e-6;  // so that tau = T/2
   const Drive drive = make_drive(segment, options, kCell);
   ASSERT_NEAR(drive.duration, 2500e-6, 1e-15);
   const CellMotion motion = motion_at(drive, drive.duration / 2);
   const double engineering = -motion.L(2, 2) * motion.H(2, 2) / kCell(2, 2);
-  EXPECT_NEAR(engineering, kPi / 5000e-6 * (1 - 0.64 / 0.82), 1e-9);
+  EXPECT_NEAR(engineering, pi / 5000e-6 * (1 - 0.64 / 0.82), 1e-9);
   EXPECT_NEAR(engineering, 137.9, 0.05);
 }
 

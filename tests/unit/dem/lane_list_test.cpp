@@ -18,7 +18,7 @@
 namespace grainlaw::dem {
 namespace {
 
-using Pair = std::tuple<std::size_t, std::size_t, int, int, int>;  // i, j, image
+using ListedPair = std::tuple<std::size_t, std::size_t, int, int, int>;  // i, j, image
 
 /// A random packing of float radii in a rectangular cell, moving, with accelerations and the reference of a list.
 State random_box(std::size_t n, double w, const Eigen::Vector3d& shape, scene::Draw& draw) {
@@ -33,8 +33,8 @@ State random_box(std::size_t n, double w, const Eigen::Vector3d& shape, scene::D
   return state;
 }
 
-std::set<Pair> pairs_of(const NeighbourList& list) {
-  std::set<Pair> pairs;
+std::set<ListedPair> pairs_of(const NeighbourList& list) {
+  std::set<ListedPair> pairs;
   for (std::size_t i = 0; i + 1 < list.first.size(); ++i) {
     for (std::size_t c = list.first[i]; c < list.first[i + 1]; ++c) {
       const Eigen::Vector3i n = list.offset[list.image[c]].cast<int>();
@@ -46,8 +46,8 @@ std::set<Pair> pairs_of(const NeighbourList& list) {
 }
 
 /// Every pair nearer than r_i + r_j + reach, from both sides.
-std::set<Pair> brute_force(const Packing& p, double reach) {
-  std::set<Pair> pairs;
+std::set<ListedPair> brute_force(const Packing& p, double reach) {
+  std::set<ListedPair> pairs;
   for (const ReferencePair& pair : reference_pairs(p, reach)) {
     const Eigen::Vector3i n = pair.image;
     pairs.emplace(pair.i, pair.j, n[0], n[1], n[2]);
@@ -75,9 +75,9 @@ TYPED_TEST(LaneList, D19EqualsBruteForce) {
         const double skin = draw.uniform(0.1, 0.8) * mean_radius(state.packing);
         const Eigen::Vector3d edge = state.packing.H.diagonal();
         if (!fits_lanes({edge[0], edge[1], edge[2]}, 2 * r_max + skin)) continue;
-        const std::set<Pair> listed =
+        const std::set<ListedPair> listed =
             pairs_of(plain_list(make_lanes<TypeParam>(state, 1e-8, skin, 0.1 * skin, team), state.packing, Listed::all));
-        const std::set<Pair> within = brute_force(state.packing, skin * (1 - 1e-9)),
+        const std::set<ListedPair> within = brute_force(state.packing, skin * (1 - 1e-9)),
                              around = brute_force(state.packing, skin + 1e-5 * 2 * r_max);
         EXPECT_TRUE(std::includes(listed.begin(), listed.end(), within.begin(), within.end())) << "missed";
         EXPECT_TRUE(std::includes(around.begin(), around.end(), listed.begin(), listed.end())) << "invented";
@@ -100,9 +100,9 @@ TYPED_TEST(LaneList, D19NearOnesAreAllThatAreNear) {
   LaneStep step;
   write_rows(lanes, step, 0, lanes.group.size());
   pick_near(lanes, {edge[0], edge[1], edge[2]}, near_skin / length, 0, lanes.group.size());
-  const std::set<Pair> all = pairs_of(plain_list(lanes, state.packing, Listed::all)),
+  const std::set<ListedPair> all = pairs_of(plain_list(lanes, state.packing, Listed::all)),
                        near = pairs_of(plain_list(lanes, state.packing, Listed::near));
-  const std::set<Pair> within = brute_force(state.packing, near_skin * (1 - 1e-4)), around = brute_force(state.packing, near_skin * (1 + 1e-4));
+  const std::set<ListedPair> within = brute_force(state.packing, near_skin * (1 - 1e-4)), around = brute_force(state.packing, near_skin * (1 + 1e-4));
   EXPECT_TRUE(std::includes(near.begin(), near.end(), within.begin(), within.end())) << "missed";
   EXPECT_TRUE(std::includes(around.begin(), around.end(), near.begin(), near.end())) << "invented";
   EXPECT_LT(near.size(), all.size());

@@ -17,7 +17,7 @@ LinearResponse response_of(const State& state) {
 }
 
 /// Spheres that carry load, at rest as far as the minimiser goes.
-State backbone(double nu, std::uint64_t seed) {
+State sixty_at_rest(double nu, std::uint64_t seed) {
   scene::Draw draw(seed);
   State state = scene::random_state(60, 3, nu, scene::cubic(1), draw);
   EXPECT_TRUE(relax(state, {}, RelaxOptions{1e-12, 400000}, {}).relaxed);
@@ -40,7 +40,7 @@ TEST(LinearResponse, CoordinatesAreThoseOfTheNorms) {
 // The minimiser and the O(N^2) reference know nothing of the stiffness.
 TEST(LinearResponse, EqualsDifferencesOfRelaxedStates) {
   for (const double nu : {0.70, 0.80}) {
-    const State state = backbone(nu, 4);
+    const State state = sixty_at_rest(nu, 4);
     const LinearResponse response = response_of(state);
     ASSERT_EQ(response.end, SolveEnd::solved);
     const double h = 1e-6;
@@ -60,7 +60,7 @@ TEST(LinearResponse, EqualsDifferencesOfRelaxedStates) {
 }
 
 TEST(LinearResponse, HasTheSymmetryOfAnEnergy) {
-  const State state = backbone(0.72, 9);
+  const State state = sixty_at_rest(0.72, 9);
   const Tangent T = response_of(state).relaxed;
   const Deviator<double> sigma = deviator<double>(reference_stress(state));
   const Deviator<double> A1 = T.row(0).tail<5>(), A2 = T.col(0).tail<5>();
@@ -72,7 +72,7 @@ TEST(LinearResponse, HasTheSymmetryOfAnEnergy) {
 
 // Second derivatives of the energy per initial volume: (B - P, A1; A1, (2/3) DG); the stress terms are equal on both sides.
 TEST(LinearResponse, RelaxationOnlySoftens) {
-  const LinearResponse response = response_of(backbone(0.72, 9));
+  const LinearResponse response = response_of(sixty_at_rest(0.72, 9));
   Tangent softened = response.affine - response.relaxed;
   softened.bottomRows<5>() *= 2.0 / 3;
   const Eigen::SelfAdjointEigenSolver<Tangent> eigen(0.5 * (softened + softened.transpose()));

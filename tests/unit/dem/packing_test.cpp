@@ -85,13 +85,13 @@ TEST(Packing, CheckNamesSphereAndQuantity) {
   }
   EXPECT_NE(message([](Packing& p) { p.sx.pop_back(); }).find("length"), std::string::npos);
   EXPECT_NE(message([](Packing& p) { p.id.pop_back(); }).find("length"), std::string::npos);
-  struct Entry {
+  struct CellEntry {
     int row, column;
     double value;
   };
-  const std::vector<Entry> bad_entries{{1, 0, 1e-3},  {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0},
+  const std::vector<CellEntry> bad_entries{{1, 0, 1e-3},  {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0},
                                        {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}};
-  for (const Entry& bad : bad_entries) {
+  for (const CellEntry& bad : bad_entries) {
     EXPECT_NE(message([&](Packing& p) { p.H(bad.row, bad.column) = bad.value; }).find("cell"), std::string::npos);
   }
 }

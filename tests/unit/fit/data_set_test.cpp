@@ -20,7 +20,7 @@ std::vector<TestRecord> small_set() {
   return testing::synthetic_dataset(testing::synthetic_truth(), options);
 }
 
-std::string refusal(const std::vector<TestRecord>& tests) {
+std::string refusal_of_tests(const std::vector<TestRecord>& tests) {
   try {
     check_and_sort(tests);
   } catch (const InvalidInput& error) {
@@ -30,7 +30,7 @@ std::string refusal(const std::vector<TestRecord>& tests) {
 }
 
 void expect_refusal(const std::vector<TestRecord>& tests, const std::vector<std::string>& words) {
-  const std::string message = refusal(tests);
+  const std::string message = refusal_of_tests(tests);
   for (const std::string& word : words) EXPECT_NE(message.find(word), std::string::npos) << word << " in: " << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
 }
@@ -130,7 +130,7 @@ TEST(DataSet, NoticesATestGivenTwice) {
   tests.back().name = "another";
   expect_refusal(tests, {"another", tests[1].name, "same series"});
   tests.back().rows.pop_back();
-  EXPECT_EQ(refusal(tests), "accepted") << "two runs of one packing may go the same way for a while";
+  EXPECT_EQ(refusal_of_tests(tests), "accepted") << "two runs of one packing may go the same way for a while";
   tests.back().packing.seed += 1;
   expect_refusal(tests, {"another", "row 0", tests[1].name, "seeds differ"});
   tests = small_set();

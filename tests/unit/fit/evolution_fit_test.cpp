@@ -5,11 +5,13 @@
 #include <cmath>
 #include <map>
 
+#include "tests/support/stage_estimate.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {
 namespace {
 
+using testing::estimate;
 const LawParameters<double> kTruth = testing::synthetic_truth();
 
 std::vector<Trajectory> trajectories(const std::vector<TestRecord>& tests) {
@@ -22,13 +24,6 @@ testing::SyntheticOptions small() {
   options.seeds = {1};
   options.rows = 40;
   return options;
-}
-
-const Estimate& estimate(const StageFit& fit, const std::string& name) {
-  for (const NamedEstimate& e : fit.stage.estimates) {
-    if (e.name == name) return e.estimate;
-  }
-  throw std::runtime_error("no estimate of " + name);
 }
 
 EvolutionProblem problem_of(const std::vector<Trajectory>& all) {

@@ -7,7 +7,7 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr int kRows = 20;
+constexpr int kRowsOfRun = 20;
 constexpr double kSlope = 3;  // of the second stage's misfit in the first one's parameter
 constexpr double kFour = 4;   // degrees of freedom of five packings
 
@@ -18,11 +18,11 @@ std::vector<ResidualBlock> blocks_of(const std::vector<double>& values, double s
     ResidualBlock block;
     block.test = "run";
     block.cluster = static_cast<int>(c);
-    block.weight = Eigen::VectorXd::Ones(kRows);
-    block.channels.push_back({"value", 0, kRows, 0, std::abs(values[c])});
+    block.weight = Eigen::VectorXd::Ones(kRowsOfRun);
+    block.channels.push_back({"value", 0, kRowsOfRun, 0, std::abs(values[c])});
     block.evaluate = [value = values[c], shift](const double* x, double* misfit, double* jacobian) {
-      for (int i = 0; i < kRows; ++i) misfit[i] = x[0] + shift - value;
-      if (jacobian != nullptr) std::fill_n(jacobian, kRows, 1.0);
+      for (int i = 0; i < kRowsOfRun; ++i) misfit[i] = x[0] + shift - value;
+      if (jacobian != nullptr) std::fill_n(jacobian, kRowsOfRun, 1.0);
       return true;
     };
     blocks.push_back(std::move(block));
@@ -47,7 +47,7 @@ TEST(InheritedError, IsThatOfBothStepsTogether) {
     for (std::size_t c = 0; c < x.size(); ++c) mean += (y[c] - kSlope * x[c]) / 5;
     for (std::size_t c = 0; c < x.size(); ++c) expected += std::pow(y[c] - kSlope * x[c] - mean, 2) / (5 * 4);
     EXPECT_NEAR(b.solution.x(0), mean, 1e-9);
-    inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, kFour, b);
+    inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, kFour, b);
     EXPECT_NEAR(variance(b), expected, 1e-9 * expected);
     EXPECT_NEAR(b.covariance()(0, 0), expected, 1e-9 * expected);
     EXPECT_NEAR(b.stage.estimates[0].estimate.degrees_of_freedom, 4, 1e-9);
@@ -58,10 +58,10 @@ TEST(InheritedError, NothingChangesWithoutAnErrorToInherit) {
   const std::vector<double> y{2.0, 2.1, 1.8, 2.2, 1.9};
   StageFit a = mean_of("a", {1.0, 1.4, 0.7, 1.1, 0.9}, 0), b = mean_of("b", y, 0);
   const double before = variance(b);
-  inherit_error(Eigen::VectorXd::Zero(5 * kRows), a.influence, kFour, b);
+  inherit_error(Eigen::VectorXd::Zero(5 * kRowsOfRun), a.influence, kFour, b);
   EXPECT_EQ(variance(b), before) << "no slope";
   a.mark_not_identified("a", "for the test");
-  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, kFour, b);
+  inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, kFour, b);
   EXPECT_EQ(variance(b), before) << "not identified";
 }
 
@@ -69,7 +69,7 @@ TEST(InheritedError, TheFewerPackingsDecide) {
   const StageFit a = mean_of("a", {1.0, 1.4, 0.7}, 0);  // the second stage has five
   StageFit b = mean_of("b", {2.0, 2.1, 1.8, 2.2, 1.9}, kSlope * a.solution.x(0));
   const Eigen::RowVectorXd own = b.influence.row(0);
-  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, 2, b);
+  inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, 2, b);
   EXPECT_EQ(b.stage.estimates[0].estimate.degrees_of_freedom, 2);
   Eigen::RowVectorXd expected = own;
   expected.head(3) -= kSlope * a.influence.row(0);
@@ -91,7 +91,7 @@ TEST(InheritedError, SlopesOfALawAreFoundByDifferences) {
   inherit_error(
       {"overlap"}, found, law,
       [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, 1, by_difference);
-  inherit_error(Eigen::VectorXd::Constant(5 * kRows, kSlope), a.influence, kFour, by_slope);
+  inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, kFour, by_slope);
   EXPECT_NEAR((by_difference.influence - by_slope.influence).norm(), 0, 1e-8 * by_slope.influence.norm());
   inherit_error(
       {"fabric"}, found, law,

@@ -12,13 +12,13 @@ namespace {
 
 using testing::synthetic_segment;
 
-LawParameters<double> truth() {
+LawParameters<double> lode_truth() {
   LawParameters<double> p = testing::synthetic_truth();
   p.lode = {0.03, 0.9};
   return p;
 }
 
-testing::SyntheticOptions small() {
+testing::SyntheticOptions few_densities() {
   testing::SyntheticOptions options;
   options.densities = {0.68, 0.74, 0.80};
   options.rows = 40;
@@ -27,9 +27,9 @@ testing::SyntheticOptions small() {
 
 /// D2 data, and with them D3 at two densities.
 std::vector<TestRecord> with_D3(const LawParameters<double>& law) {
-  testing::SyntheticDataset data(law, small());
+  testing::SyntheticDataset data(law, few_densities());
   std::vector<TestRecord> tests = data.records();
-  for (const std::uint64_t seed : small().seeds) {
+  for (const std::uint64_t seed : few_densities().seeds) {
     for (const double nu : {0.70, 0.80})
       tests.push_back(data.test(fmt::format("d3-{}-s{}", nu, seed), seed, nu,
                                 {synthetic_segment(Mode::D3, ExtentKind::eps_dev, 0.3)}));
@@ -38,13 +38,13 @@ std::vector<TestRecord> with_D3(const LawParameters<double>& law) {
 }
 
 TEST(LodeFit, SeparatesShearAtConstantVolumeByItsLodeAngle) {
-  testing::SyntheticDataset data(truth(), small());
-  std::vector<TestRecord> tests = with_D3(truth());
+  testing::SyntheticDataset data(lode_truth(), few_densities());
+  std::vector<TestRecord> tests = with_D3(lode_truth());
   tests.push_back(data.test("uni", 1, 0.70, {synthetic_segment(Mode::UNI, ExtentKind::target_nu, 0.75)}));
   tests.push_back(data.test(
       "d2-d3", 1, 0.72,
       {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.1), synthetic_segment(Mode::D3, ExtentKind::eps_dev, 0.1)}));
-  const auto all = trajectories_of(check_and_sort(tests), truth().isotropic.pressure.nu_c, {});
+  const auto all = trajectories_of(check_and_sort(tests), lode_truth().isotropic.pressure.nu_c, {});
   const ByLodeAngle sorted = by_lode_angle(all);
   EXPECT_EQ(sorted.others.size(), 5u) << "four D3, and the second segment of d2-d3";
   EXPECT_EQ(sorted.others.size() + sorted.reference.size(), all.size());
@@ -55,9 +55,9 @@ TEST(LodeFit, SeparatesShearAtConstantVolumeByItsLodeAngle) {
 }
 
 TEST(LodeFit, GivesBackWhatMadeTheData) {
-  LawParameters<double> law = truth();
+  LawParameters<double> law = lode_truth();
   law.lode = {};
-  const auto all = trajectories_of(check_and_sort(with_D3(truth())), truth().isotropic.pressure.nu_c, {});
+  const auto all = trajectories_of(check_and_sort(with_D3(lode_truth())), lode_truth().isotropic.pressure.nu_c, {});
   const StageFit fit = fit_lode(by_lode_angle(all).others, law, {}, {});
   EXPECT_TRUE(fit.stage.converged) << fit.stage.termination;
   EXPECT_NEAR(law.lode.stress_ratio, 0.03, 1e-6);
@@ -65,8 +65,8 @@ TEST(LodeFit, GivesBackWhatMadeTheData) {
 }
 
 TEST(LodeFit, LeavesTheLawOfD2Alone) {
-  const LawParameters<double> law = truth();
-  const Calibration without = calibrate(testing::synthetic_dataset(law, small()), {}, {});
+  const LawParameters<double> law = lode_truth();
+  const Calibration without = calibrate(testing::synthetic_dataset(law, few_densities()), {}, {});
   const Calibration with = calibrate(with_D3(law), {}, {});
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string name = parameter_table()[i].name;

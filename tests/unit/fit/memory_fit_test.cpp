@@ -5,15 +5,17 @@
 #include <cmath>
 
 #include "fit/calibrate.hpp"
+#include "tests/support/stage_estimate.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {
 namespace {
 
+using testing::estimate;
 using testing::SyntheticOptions;
 
 /// Parameters of the size that DEM gives.
-LawParameters<double> truth() {
+LawParameters<double> memory_truth() {
   LawParameters<double> p = testing::synthetic_truth();
   p.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1, 0.7};
   return p;
@@ -26,30 +28,23 @@ SyntheticOptions of_memory() {
   return options;
 }
 
-std::vector<Trajectory> trajectories(const std::vector<TestRecord>& tests) {
-  return trajectories_of(check_and_sort(tests), truth().isotropic.pressure.nu_c, {});
+std::vector<Trajectory> memory_trajectories(const std::vector<TestRecord>& tests) {
+  return trajectories_of(check_and_sort(tests), memory_truth().isotropic.pressure.nu_c, {});
 }
 
-/// The truth with memory's parameters where a fit begins.
+/// The memory_truth with memory's parameters where a fit begins.
 LawParameters<double> at_start() {
-  LawParameters<double> p = truth();
+  LawParameters<double> p = memory_truth();
   p.memory = start_parameters().memory;
   return p;
 }
 
-const Estimate& estimate(const StageFit& fit, const std::string& name) {
-  for (const NamedEstimate& e : fit.stage.estimates) {
-    if (e.name == name) return e.estimate;
-  }
-  throw std::out_of_range(name);
-}
-
 TEST(MemoryFit, GivesBackWhatMadeTheData) {
-  const auto tests = testing::synthetic_dataset(truth(), of_memory());
+  const auto tests = testing::synthetic_dataset(memory_truth(), of_memory());
   LawParameters<double> law = at_start();
-  const StageFit fit = fit_memory(trajectories(tests), law, {}, {});
+  const StageFit fit = fit_memory(memory_trajectories(tests), law, {}, {});
   EXPECT_TRUE(fit.stage.converged) << fit.stage.termination;
-  const LawParameters<double> expected = truth();
+  const LawParameters<double> expected = memory_truth();
   EXPECT_NEAR(law.memory.G, expected.memory.G, 1e-5);
   EXPECT_NEAR(law.memory.alpha, expected.memory.alpha, 1e-5);
   EXPECT_NEAR(law.memory.k, expected.memory.k, 1e-3);
@@ -67,7 +62,8 @@ TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
   SyntheticOptions options = of_memory();
   options.sequences = false;
   LawParameters<double> law = at_start();
-  const StageFit fit = fit_memory(trajectories(testing::synthetic_dataset(truth(), options)), law, {}, {});
+  const StageFit fit =
+      fit_memory(memory_trajectories(testing::synthetic_dataset(memory_truth(), options)), law, {}, {});
   for (const char* name : {"memory.c_F", "memory.a2"}) {
     EXPECT_EQ(estimate(fit, name).status, Status::not_identified) << name;
     EXPECT_NE(estimate(fit, name).note.find("ISO"), std::string::npos) << "names the remedy";
@@ -79,9 +75,9 @@ TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
 // relative noise. One weight for all rows of a test has no such bias.
 TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {
   const CalibrationOptions options;
-  for (const Trajectory& t : trajectories(testing::synthetic_dataset(truth(), of_memory()))) {
+  for (const Trajectory& t : memory_trajectories(testing::synthetic_dataset(memory_truth(), of_memory()))) {
     if (t.axes.empty() || std::abs(t.direction.dx) > 1e-12) continue;
-    const MemoryProblem problem = memory_problem({t}, truth(), true, options);
+    const MemoryProblem problem = memory_problem({t}, memory_truth(), true, options);
     const Channel& P = problem.blocks.front().channels.front();
     ASSERT_EQ(P.quantity, "P_star");
     double mean = 0;
@@ -95,7 +91,7 @@ TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {
 TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
   SyntheticOptions few = of_memory();
   few.densities = {0.70, 0.74};
-  const Calibration calibration = calibrate(testing::synthetic_dataset(truth(), few), {}, {});
+  const Calibration calibration = calibrate(testing::synthetic_dataset(memory_truth(), few), {}, {});
   EXPECT_FALSE(has_values(calibration, "memory"));
   const Estimate& G = calibration.estimates[parameter_index("memory.G")];
   EXPECT_EQ(G.status, Status::not_identified);
@@ -104,14 +100,14 @@ TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
 }
 
 TEST(MemoryFit, ASegmentThatTurnsBackStartsFromItsReversal) {
-  testing::SyntheticDataset data(truth(), of_memory());
+  testing::SyntheticDataset data(memory_truth(), of_memory());
   auto tests = data.records();
   tests.push_back(data.test("cycle", 9, 0.72,
                             {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.1),
                              testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.1, true),
                              testing::synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.74)}));
   int found = 0;
-  for (const Trajectory& t : trajectories(tests)) {
+  for (const Trajectory& t : memory_trajectories(tests)) {
     if (t.test != "cycle") continue;
     ++found;
     const Deviator<double> s = t.start.sigma / t.start.P;

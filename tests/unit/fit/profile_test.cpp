@@ -42,7 +42,7 @@ std::vector<ResidualBlock> blocks_of(const Model& model, double level, double sl
   return blocks;
 }
 
-const auto kLine = [](const double* x, double t, double* d) {
+const auto kStraight = [](const double* x, double t, double* d) {
   d[0] = 1;
   d[1] = t;
   return x[0] + x[1] * t;
@@ -56,7 +56,7 @@ StageFit profiled(const std::vector<FreeParameter>& parameters, const std::vecto
 
 TEST(Profile, OfAStraightLineIsTheIntervalOfItsStandardError) {
   const std::vector<FreeParameter> parameters{{"level", 0, -10, 10, 1}, {"slope", 0, -10, 10, 1}};
-  const StageFit fit = profiled(parameters, blocks_of(kLine, 5, 0));
+  const StageFit fit = profiled(parameters, blocks_of(kStraight, 5, 0));
   const Estimate& slope = fit.stage.estimates[1].estimate;
   ASSERT_GE(slope.half_width(), std::abs(slope.value));
   ASSERT_EQ(fit.stage.profiles.size(), 1u) << "the level is certain";
@@ -75,7 +75,7 @@ TEST(Profile, OfAStraightLineIsTheIntervalOfItsStandardError) {
 TEST(Profile, OfAParameterOnItsBoundHasItsOtherEnd) {
   const std::vector<FreeParameter> free{{"level", 0, -10, 10, 1}, {"slope", 0, -10, 10, 1}};
   const std::vector<FreeParameter> bounded{{"level", 0, -10, 10, 1}, {"slope", 1, 0, 10, 1}};
-  const auto blocks = blocks_of(kLine, 5, -0.2);
+  const auto blocks = blocks_of(kStraight, 5, -0.2);
   const double b = fit_stage("free", "", free, blocks, "", 1, {}).solution.x(1);
   ASSERT_LT(b, 0);
   const StageFit fit = profiled(bounded, blocks);

@@ -23,15 +23,15 @@ using scene::Draw;
 using scene::Encounter;
 using testing::expect_figure;
 
-struct Errors {
+struct CollisionErrors {
   double max = 0, rms = 0, mean = 0;  ///< of e [-]
   double mean_duration = 0;           ///< mean of |t - t_c|/t_c [-]
 };
 
-/// Errors of `e` over encounters at random phase; t_c/dt is uniform within 1 around `steps`, so never an integer.
-Errors errors_over_phases(double r, double gamma, double steps, int encounters, double exact) {
+/// CollisionErrors of `e` over encounters at random phase; t_c/dt is uniform within 1 around `steps`, so never an integer.
+CollisionErrors errors_over_phases(double r, double gamma, double steps, int encounters, double exact) {
   Draw draw(7);
-  Errors errors;
+  CollisionErrors errors;
   for (int n = 0; n < encounters; ++n) {
     Encounter encounter;
     encounter.r_i = encounter.r_j = r;
@@ -77,7 +77,7 @@ TEST(HeadOnCollision, D1FormulaGivesThePublishedNumbers) {
 }
 
 TEST(HeadOnCollision, D1RestitutionOfTheMeanPair) {
-  const Errors errors = errors_over_phases(1e-3, 1, 50, 2000, exact_restitution(1e-3, 1));
+  const CollisionErrors errors = errors_over_phases(1e-3, 1, 50, 2000, exact_restitution(1e-3, 1));
   expect_figure("D1.max", errors.max, 3.0e-3);
   expect_figure("D1.rms", errors.rms, 1.3e-3);
   expect_figure("D1.mean", std::abs(errors.mean), 2e-4);
@@ -88,7 +88,7 @@ TEST(HeadOnCollision, D1RestitutionOfTheMeanPair) {
 TEST(HeadOnCollision, D1RestitutionOfTheSmallestPair) {
   const double exact = exact_restitution(0.5e-3, 1), mean_pair = exact_restitution(1e-3, 1);
   const double scale = exact * std::log(exact) / (mean_pair * std::log(mean_pair));
-  const Errors errors = errors_over_phases(0.5e-3, 1, 50, 2000, exact);
+  const CollisionErrors errors = errors_over_phases(0.5e-3, 1, 50, 2000, exact);
   expect_figure("D1.small.max", errors.max, 3.0e-3 * scale);
   expect_figure("D1.small.rms", errors.rms, 1.3e-3 * scale);
   expect_figure("D1.small.mean", std::abs(errors.mean), 2e-4 * scale);
@@ -100,9 +100,9 @@ double order_table(const std::string& name, double r, double gamma) {
   const double exact = exact_restitution(r, gamma);
   const std::vector<double> steps{25, 50, 100, 200, 400};
   std::vector<std::vector<std::string>> rows;
-  std::vector<Errors> all;
+  std::vector<CollisionErrors> all;
   for (const double n : steps) {
-    const Errors errors = errors_over_phases(r, gamma, n, 2000, exact);
+    const CollisionErrors errors = errors_over_phases(r, gamma, n, 2000, exact);
     const std::string order = all.empty() ? "" : fmt::format("{:.2f}", std::log2(all.back().rms / errors.rms));
     all.push_back(errors);
     rows.push_back({fmt::format("{:.0f}", n), fmt::format("{:.2e}", errors.max), fmt::format("{:.2e}", errors.rms),
@@ -190,7 +190,7 @@ TEST(HeadOnCollision, D3ContactEndsAtOverlapZero) {
   EXPECT_NEAR(at_overlap_zero, 0.926101, 5e-7);
   EXPECT_NEAR(at_force_zero, 0.927207, 5e-7);
 
-  const Errors errors = errors_over_phases(1e-3, 1, 400, 2000, at_overlap_zero);
+  const CollisionErrors errors = errors_over_phases(1e-3, 1, 400, 2000, at_overlap_zero);
   expect_figure("D3.overlap_zero", std::abs(errors.mean), 2e-5);
   EXPECT_GT(std::abs(at_overlap_zero + errors.mean - at_force_zero), 1e-3) << "the other exit rule must be told apart";
 }

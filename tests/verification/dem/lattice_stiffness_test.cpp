@@ -19,24 +19,24 @@ namespace {
 
 using testing::expect_figure;
 
-const double k = Material{}.stiffness;
+const double kStiffness = Material{}.stiffness;
 
 LinearResponse response_of(const State& state) {
-  return linear_response(state.packing, contacts_at(state.packing, pairs_within(state.packing, 0, 1)), k);
+  return linear_response(state.packing, contacts_at(state.packing, pairs_within(state.packing, 0, 1)), kStiffness);
 }
 
 TEST(LatticeStiffness, FaceCentredCubic) {
   const double a = 3e-3, d = a / std::sqrt(2.0);
   double error = 0;
   for (const double overlap : {1e-4, 0.02}) {
-    const double r = 0.5 * d / (1 - overlap), delta = 2 * r - d, P = 8 * k * delta * d / (a * a * a);
+    const double r = 0.5 * d / (1 - overlap), delta = 2 * r - d, P = 8 * kStiffness * delta * d / (a * a * a);
     std::vector<scene::Sphere> spheres;
     for (const Eigen::Vector3d& site : {Eigen::Vector3d(0, 0, 0), {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}) {
       spheres.push_back({r, a * (site + Eigen::Vector3d(0.1, 0.3, -0.2)), Eigen::Vector3d::Zero()});
     }
     const LinearResponse response = response_of(scene::state_of(scene::cubic(a), spheres));
     ASSERT_EQ(response.end, SolveEnd::solved);
-    const double stiff = k / a * (1 + delta / d);
+    const double stiff = kStiffness / a * (1 + delta / d);
     Vector6 expected;
     expected << 4.0 / 3 * stiff + P / 3, stiff - 2 * P, stiff - 2 * P, 2 * stiff - 2 * P, 2 * stiff - 2 * P,
         2 * stiff - 2 * P;
@@ -53,14 +53,14 @@ TEST(LatticeStiffness, OneSphereInAnOblongCell) {
   const State state = scene::state_of(L.asDiagonal(), {{r, {1e-4, 2e-4, 3e-4}, Eigen::Vector3d::Zero()}});
   const LinearResponse response = response_of(state);
   ASSERT_EQ(response.end, SolveEnd::solved);
-  const Eigen::Vector3d sigma = k / V * (2 * r - L.array()) * L.array();
+  const Eigen::Vector3d sigma = kStiffness / V * (2 * r - L.array()) * L.array();
   double error = 0, largest = 0;
   for (int a = 0; a < 6; ++a) {
     const Eigen::Matrix3d eps = -strain_of(Vector6::Unit(a));
     Eigen::Matrix3d change;
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
-        change(i, j) = i == j ? k * L[i] * L[i] / V * eps(i, i) + sigma[i] * (eps.trace() - eps(i, i))
+        change(i, j) = i == j ? kStiffness * L[i] * L[i] / V * eps(i, i) + sigma[i] * (eps.trace() - eps(i, i))
                               : -(sigma[i] + sigma[j]) * eps(i, j);
       }
     }

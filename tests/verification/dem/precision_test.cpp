@@ -23,14 +23,14 @@ namespace {
 
 using testing::expect_figure;
 
-struct Errors {
+struct ForceErrors {
   double force = 0, max_force = 0;  // of a sphere, rms and largest, over the mean contact force
   double pressure = 0;              // relative, with its sign
 };
 
 /// Forces of the lanes on a packing at rest, against the reference.
 template <class Real>
-Errors force_errors(State state) {
+ForceErrors force_errors(State state) {
   Packing& p = state.packing;
   round_radii(p);
   const CellMotion still = scene::at_rest(state);
@@ -52,7 +52,7 @@ Errors force_errors(State state) {
   breath.L = Eigen::Matrix3d::Identity() * 1e-3;
   advance(sim, breath, breath);
   synchronise(sim);
-  Errors errors;
+  ForceErrors errors;
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Eigen::Vector3d f = p.mass[i] * Eigen::Vector3d(sim.state.ax[i], sim.state.ay[i], sim.state.az[i]);
     const double error = (f - expected.force[i]).norm() / mean_force;
@@ -80,10 +80,10 @@ State near_jamming(double overlap, std::uint64_t seed) {
 TEST(PrecisionTable, ForcesAndPressure) {
   std::vector<std::vector<std::string>> rows;
   for (const double nu : {0.70, 0.74, 0.82}) {
-    Errors worst_mixed, worst_double;
+    ForceErrors worst_mixed, worst_double;
     for (const std::uint64_t seed : {3U, 4U}) {
       const State state = scene::jammed({"Paper", 3}, 1000, nu, seed);
-      const Errors mixed = force_errors<float>(state), full = force_errors<double>(state);
+      const ForceErrors mixed = force_errors<float>(state), full = force_errors<double>(state);
       worst_mixed = {std::max(worst_mixed.force, mixed.force), std::max(worst_mixed.max_force, mixed.max_force), std::max(worst_mixed.pressure, std::abs(mixed.pressure))};
       worst_double = {0, std::max(worst_double.max_force, full.max_force), std::max(worst_double.pressure, std::abs(full.pressure))};
     }
@@ -135,7 +135,7 @@ TEST(PrecisionTable, OneShallowContact) {
     const double r_1 = draw.uniform(0.5e-3, 1.5e-3), r_2 = draw.uniform(0.5e-3, 1.5e-3);
     const Eigen::Vector3d x = draw.vector(0, 40e-3), n = draw.vector(-1, 1).normalized();
     State state = scene::state_of(scene::cubic(40e-3), {{r_1, x}, {r_2, x + (r_1 + r_2 - 1e-7) * n}});
-    const Errors errors = force_errors<float>(state);
+    const ForceErrors errors = force_errors<float>(state);
     square += errors.max_force * errors.max_force / kPairs;
     largest = std::max(largest, errors.max_force);
   }

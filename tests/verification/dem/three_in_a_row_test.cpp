@@ -75,7 +75,7 @@ Vector6 exact(const Row3& row, Vector6 y, double T) {
 }
 
 constexpr double kEdge = 32e-3;
-constexpr double kSpeed = 0.25;
+constexpr double kFirstSpeed = 0.25;
 
 /// Sphere 0 flies to the right and hits 1 and 2, which touch; it starts `gap` away. Fractions lie in [1/2, 1).
 State start_row(const Row3& row, double gap, bool mirrored) {
@@ -84,7 +84,7 @@ State start_row(const Row3& row, double gap, bool mirrored) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (i == 1) x = 0.75 * kEdge + row.r[1];
     if (i == 2) x += row.r[1] + row.r[2];
-    spheres[i] = {row.r[i], {x, 0.5 * kEdge, 0.5 * kEdge}, {i == 0 ? kSpeed : 0, 0, 0}};
+    spheres[i] = {row.r[i], {x, 0.5 * kEdge, 0.5 * kEdge}, {i == 0 ? kFirstSpeed : 0, 0, 0}};
   }
   State state = scene::state_of(scene::cubic(kEdge), spheres, row.material);
   if (mirrored) {
@@ -107,7 +107,7 @@ TEST_P(ThreeInARow, D5AgreesWithTheMatrixExponential) {
   const double dt = shortest_step(row);
   double worst = 0;
   for (int n = 0; n < 20; ++n) {
-    const double gap = (1 + n / 20.0) * dt * kSpeed;
+    const double gap = (1 + n / 20.0) * dt * kFirstSpeed;
     State state = start_row(row, gap, false);
     const double shortest = min_collision_time(state.packing, row.material);
     Vector6 y;
@@ -123,7 +123,7 @@ TEST_P(ThreeInARow, D5AgreesWithTheMatrixExponential) {
     EXPECT_LT(row.overlap(y, 0), 0) << "all must have parted";
     EXPECT_LT(row.overlap(y, 1), 0) << "all must have parted";
     for (std::size_t i = 0; i < 3; ++i) {
-      worst = std::max(worst, std::abs(sim.state.packing.vx[i] - y(3 + static_cast<int>(i))) / kSpeed);
+      worst = std::max(worst, std::abs(sim.state.packing.vx[i] - y(3 + static_cast<int>(i))) / kFirstSpeed);
     }
   }
   testing::expect_figure(fmt::format("D5.{:g}-{:g}-{:g}", 1e3 * row.r[0], 1e3 * row.r[1], 1e3 * row.r[2]), worst, 5e-3);
@@ -148,7 +148,7 @@ TEST(ThreeInARow, D5MirrorImageBitwise) {
       different += a.state.packing.vx[i] != -b.state.packing.vx[i] ? 1 : 0;
     }
   }
-  EXPECT_LT(a.state.packing.vx[0], 0.5 * kSpeed) << "they must have met";
+  EXPECT_LT(a.state.packing.vx[0], 0.5 * kFirstSpeed) << "they must have met";
   testing::expect_figure("D5.numbers_that_differ_in_the_mirror", different, 0);
 }
 

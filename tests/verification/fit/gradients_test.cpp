@@ -19,7 +19,7 @@ namespace {
 constexpr int kPoints = 1000;
 constexpr double kPassLine = 1e-7;
 
-const std::vector<TestRecord>& records() {
+const std::vector<TestRecord>& few_rows() {
   static const std::vector<TestRecord> tests = [] {
     testing::SyntheticOptions options;
     options.densities = {0.69, 0.76};
@@ -52,7 +52,7 @@ double worst(const std::vector<FreeParameter>& parameters, const std::vector<Res
 }
 
 double worst_of_density_laws() {
-  const std::vector<DensitySeries> series = isotropic_series(check_and_sort(records()), {});
+  const std::vector<DensitySeries> series = isotropic_series(check_and_sort(few_rows()), {});
   const StateLaw<double> law = published_parameters().isotropic;
   const double nu = least_nu(series);
   double largest = 0;
@@ -85,7 +85,7 @@ double worst_of_evolution(Coupling coupling) {
   options.coupling = coupling;
   options.max_step = 1e-2;  // derivatives are those of the discrete integrator, whatever its step
   const LawParameters<double> start = testing::synthetic_truth();
-  const auto trajectories = trajectories_of(check_and_sort(records()), 0.67, options);
+  const auto trajectories = trajectories_of(check_and_sort(few_rows()), 0.67, options);
   const EvolutionProblem problem = evolution_problem(trajectories, start, evolution_parameters(coupling), options);
   return worst(problem.parameters, problem.blocks, 4, problem.parameters[2].upper + 1e-4);
 }
