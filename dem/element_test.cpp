@@ -285,4 +285,11 @@ ElementTest continue_element_test(Checkpoint from, const std::vector<StraightSeg
   return run.run();
 }
 
+double largest_energy_residual(const std::vector<Observation>& rows) {
+  BalanceJudge judge;
+  double largest = 0;
+  for (const Observation& row : rows) largest = std::max(largest, judge.residual(row, rows.front()));
+  return largest;
+}
+
 }  // namespace grainlaw::dem

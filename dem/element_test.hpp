@@ -52,4 +52,8 @@ ElementTest continue_element_test(Checkpoint from, const std::vector<StraightSeg
                                   const ElementTestOptions& options, const RunControl& control,
                                   const StepObserver& on_step = {}, const Checkpointing& checkpointing = {});
 
+/// Largest energy residual of `rows` as a running test judges it: |imbalance| over the largest |W_box| of the rows so far + E_kin(0)
+/// + D [-].
+double largest_energy_residual(const std::vector<Observation>& rows);
+
 }  // namespace grainlaw::dem

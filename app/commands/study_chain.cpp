@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "app/output_folder.hpp"
 #include "app/study/calibrated_setting.hpp"
 #include "app/study/figure_study.hpp"
+#include "app/study/reference_by_packings.hpp"
 #include "app/study/spec_settings.hpp"
 #include "app/study/study_json.hpp"
 #include "app/study/study_output.hpp"
@@ -26,17 +29,22 @@ ExitCode study_chain(const StudyChainOptions& options, Session& session) {
   const std::size_t judged = options.reference.empty() ? 0 : 1;
   make_output_folder(options.output);
   std::vector<double> densities;  // of the first setting, the reference
+  std::optional<ReferenceByPackings> reference;
   const auto show = [&](const SpecSetting& setting) {
     const Dataset dataset = run_setting(setting, options.output, session);
-    const bool first = densities.empty();
-    if (first) densities = shear_densities(dataset);
+    if (!reference) densities = shear_densities(dataset);
     fit::CalibrationOptions fit_options;
     fit_options.threads = session.threads;
     fit_options.coupling = setting.spec.coupling;
     SettingOutcome outcome =
         calibrated_setting(setting.name, setting.changes, dataset, fit_options, densities, path, session);
-    if (first && outcome.model.empty())
+    if (reference) {
+      outcome.compared_with = reference->quantities(dataset, session);
+    } else if (outcome.model.empty()) {
       throw InvalidInput(fmt::format("{}: predicts nothing to compare with: {}", setting.name, outcome.note));
+    } else {
+      reference.emplace(dataset, outcome, fit_options, densities, path);
+    }
     return outcome;
   };
   const std::vector<SettingOutcome> outcomes = outcomes_of(settings, judged, session, show);

@@ -33,7 +33,15 @@ ExitCode study_dem(const StudyDemOptions& options, Session& session) {
   const auto show = [&](const SpecSetting& setting) -> SettingOutcome {
     const Dataset dataset = run_setting(setting, options.output, session);
     const std::vector<std::uint64_t> seeds = packings_of(dataset);
-    return {setting.name, setting.changes, cost_of(dataset), seeds, packing_quantities(dataset, seeds), "", ""};
+    return {setting.name,
+            setting.changes,
+            cost_of(dataset),
+            seeds,
+            packing_quantities(dataset, seeds),
+            {},
+            energy_residual_of(dataset),
+            "",
+            ""};
   };
   const SettingsStudy study = study_of("dem", kErrorOfPackings, Packings::given, Json(spec_to_json(base.spec)),
                                        outcomes_of(settings, 1, session, show), 1);

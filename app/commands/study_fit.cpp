@@ -8,6 +8,7 @@
 #include "app/study/calibrated_setting.hpp"
 #include "app/study/figure_study.hpp"
 #include "app/study/fit_choices.hpp"
+#include "app/study/reference_by_packings.hpp"
 #include "app/study/study_json.hpp"
 #include "app/study/study_output.hpp"
 #include "app/study/study_table.hpp"
@@ -63,12 +64,19 @@ ExitCode study_fit(const StudyFitOptions& options, Session& session) {
   make_output_folder(options.output);
   const std::vector<double> densities = shear_densities(everything.dataset);
   std::vector<SettingOutcome> outcomes;
+  std::optional<ReferenceByPackings> reference;
   for (const FitSetting& setting : settings) {
     session.progress.log("setting " + setting.name);
     outcomes.push_back(calibrated_setting(setting.name, setting.changes, setting.choice.dataset, setting.choice.options,
                                           densities, path, session));
-    if (path ? outcomes.front().model.empty() : outcomes.front().quantities.empty())
-      throw InvalidInput(fmt::format("{}: shows nothing to compare with: {}", folder.string(), outcomes.front().note));
+    SettingOutcome& outcome = outcomes.back();
+    if (reference) {
+      outcome.compared_with = reference->quantities(setting.choice.dataset, session);
+    } else if (path ? outcome.model.empty() : outcome.quantities.empty()) {
+      throw InvalidInput(fmt::format("{}: shows nothing to compare with: {}", folder.string(), outcome.note));
+    } else {
+      reference.emplace(setting.choice.dataset, outcome, setting.choice.options, densities, path);
+    }
   }
   const SettingsStudy study =
       study_of("fit", path ? kOfPrediction : kOfLaws, Packings::chosen,

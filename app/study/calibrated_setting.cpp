@@ -33,7 +33,8 @@ SettingOutcome calibrated_setting(const std::string& name, const Changes& change
                                   const fit::CalibrationOptions& options, const std::vector<double>& densities,
                                   const std::optional<Path>& path, Session& session) {
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
-  SettingOutcome outcome{name, changes, cost_of(dataset), packings_of(dataset), {}, "", ""};
+  SettingOutcome outcome{name, changes, cost_of(dataset), packings_of(dataset), {}, {}, energy_residual_of(dataset),
+                         "",   ""};
   session.progress.begin({1}, "");
   const RunControl control = session.progress.control(0, "fit of " + name, session.stop);
   const Stopwatch stopwatch;

@@ -19,7 +19,9 @@ Series point_of(const SettingResult& r, std::size_t number) {
   series.marker = kMarkers[number % kMarkers.size()];
   series.open_marker = number / kMarkers.size() % 2 == 1;
   series.marker_size = 4;
-  series.colour = r.dominated_by.empty() ? kColours[number % kColours.size()] : Colour::grey;
+  series.colour = r.dominated_by.empty() && !near_the_stop(r.outcome.energy_residual)
+                      ? kColours[number % kColours.size()]
+                      : Colour::grey;
   return series;
 }
 
@@ -62,7 +64,7 @@ Figure figure_of(const SettingsStudy& study) {
   figure.description =
       "Error reached over particle-steps. " + study.error +
       ". Shaded: what sampling alone makes; star: the default; grey: dominated by a cheaper setting that is "
-      "not worse";
+      "not worse, or so near the energy balance's stop that other data sets would not be finished";
   figure.panel_height = 380;
   std::vector<const SettingResult*> by_cost;
   for (std::size_t i = study.judged; i < study.results.size(); ++i) by_cost.push_back(&study.results[i]);

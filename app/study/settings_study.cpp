@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "dem/element_test.hpp"
+
 namespace grainlaw::app {
 namespace {
 
@@ -30,11 +32,12 @@ SettingResult compare_setting(const SettingOutcome& setting, const SettingOutcom
   SettingResult result{setting, {}, kMissing, kMissing, kMissing, kMissing, kMissing, {}};
   double errors = 0, floors = 0, samplings = 0;
   int counted = 0;
-  for (const StudyQuantity& theirs : reference.quantities) {
+  const bool paired = !setting.compared_with.empty();
+  for (const StudyQuantity& theirs : paired ? setting.compared_with : reference.quantities) {
     const auto found = std::find_if(setting.quantities.begin(), setting.quantities.end(),
                                     [&](const StudyQuantity& q) { return q.name == theirs.name; });
-    const QuantityError e =
-        compare(found == setting.quantities.end() ? StudyQuantity{} : *found, setting.seeds, theirs, reference.seeds);
+    const QuantityError e = compare(found == setting.quantities.end() ? StudyQuantity{} : *found, setting.seeds, theirs,
+                                    paired ? setting.seeds : reference.seeds);
     result.errors.push_back(e);
     if (!e.in_error || !std::isfinite(e.error)) continue;
     errors += e.error * e.error;
@@ -69,13 +72,18 @@ bool shows_as_much(const SettingResult& other, const SettingResult& one) {
   return true;
 }
 
+/// Whether a data set that is safe from the energy balance at `one` may be stopped at `other`.
+bool less_safe(const SettingResult& other, const SettingResult& one) {
+  return near_the_stop(other.outcome.energy_residual) && !near_the_stop(one.outcome.energy_residual);
+}
+
 void find_dominated(std::vector<SettingResult>& results, std::size_t first) {
   for (std::size_t i = first; i < results.size(); ++i) {
     SettingResult& one = results[i];
     for (std::size_t j = first; j < results.size(); ++j) {
       const SettingResult& other = results[j];
       if (other.outcome.cost.particle_steps < one.outcome.cost.particle_steps && other.reached <= one.reached &&
-          shows_as_much(other, one))
+          shows_as_much(other, one) && !less_safe(other, one))
         one.dominated_by.push_back(other.outcome.name);
     }
   }
@@ -93,6 +101,19 @@ Cost cost_of(const Dataset& dataset) {
     cost.seconds += test.cost.seconds;
   }
   return cost;
+}
+
+double energy_residual_of(const Dataset& dataset) {
+  double largest = 0;
+  for (const DatasetTest& test : dataset.tests) {
+    if (test.record.role == Role::calibration)
+      largest = std::max(largest, dem::largest_energy_residual(test.record.rows));
+  }
+  return largest;
+}
+
+bool near_the_stop(double energy_residual) {
+  return energy_residual > dem::ElementTestOptions().stop_energy_residual / 2;
 }
 
 std::vector<std::uint64_t> packings_of(const Dataset& dataset) {

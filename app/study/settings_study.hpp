@@ -6,8 +6,9 @@
 // settings have the same packings, of which only differences count, and sampling where packings are chosen, too: the interval
 // is all that users of the setting have, and few packings do not know their own scatter (two: t = 12.7). Nor does a time step or
 // a rate change how packings scatter: among settings that differ only in how they compute, sampling is pooled (root mean square),
-// lest a setting dominate by a scatter that happens to come out small. Costs are counted in particle-steps; seconds are beside
-// them.
+// lest a setting dominate by a scatter that happens to come out small. A setting whose energy residual comes nearer than half to the
+// one that stops a run dominates none that keeps away: its next data set may not be finished. Costs are counted in particle-steps;
+// seconds are beside them.
 
 #include <cstdint>
 #include <string>
@@ -33,6 +34,12 @@ struct Cost {
 /// Of the calibration tests; a run that gave several of them counts once.
 Cost cost_of(const Dataset& dataset);
 
+/// Largest energy residual of the calibration tests [-].
+double energy_residual_of(const Dataset& dataset);
+
+/// Whether it comes nearer than half to the residual that stops a run.
+bool near_the_stop(double energy_residual);
+
 /// Seeds of the calibration tests, ascending.
 std::vector<std::uint64_t> packings_of(const Dataset& dataset);
 
@@ -43,8 +50,10 @@ struct SettingOutcome {
   Cost cost;
   std::vector<std::uint64_t> seeds;  ///< of the packings, in the order of the influence's columns
   std::vector<StudyQuantity> quantities;
-  std::string model;  ///< rung of the law that predicts; empty: none does
-  std::string note;   ///< what went wrong; may be empty
+  std::vector<StudyQuantity> compared_with;  ///< the reference's by these packings; empty: by all of its own
+  double energy_residual = 0;                ///< largest of the runs, dem::largest_energy_residual() [-]
+  std::string model;                         ///< rung of the law that predicts; empty: none does
+  std::string note;                          ///< what went wrong; may be empty
 };
 
 struct SettingResult {

@@ -69,7 +69,7 @@ std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings
     } catch (const Error& error) {
       if (outcomes.size() <= judged) throw;
       session.progress.log(fmt::format("{} fails: {}", setting.name, one_line(error.what(), 300)));
-      outcomes.push_back({setting.name, setting.changes, {}, setting.spec.seeds, {}, "", error.what()});
+      outcomes.push_back({setting.name, setting.changes, {}, setting.spec.seeds, {}, {}, 0, "", error.what()});
     }
   }
   return outcomes;

@@ -24,7 +24,9 @@ OrderedJson result_to_json(const SettingResult& r) {
   object["particle_steps"] = outcome.cost.particle_steps;
   object["seconds"] = outcome.cost.seconds;
   object["fit_seconds"] = outcome.cost.fit_seconds;
+  object["energy_residual"] = outcome.energy_residual;
   object["model"] = outcome.model.empty() ? OrderedJson() : OrderedJson(outcome.model);
+  object["same_packings"] = !outcome.compared_with.empty();
   object["error"] = number_or_null(r.error);
   object["floor"] = number_or_null(r.floor);
   object["sampling"] = number_or_null(r.sampling);

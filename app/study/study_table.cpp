@@ -16,9 +16,11 @@ std::string percent(double share) { return std::isfinite(share) ? fmt::format("{
 
 std::string line_of(const SettingResult& r, std::size_t width) {
   const SettingOutcome& o = r.outcome;
-  std::string text = fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8}", o.name, width,
-                                 o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds,
-                                 percent(r.error), percent(r.floor), percent(r.sampling), percent(r.reached));
+  std::string text =
+      fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8} {:>8}", o.name, width,
+                  o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds, percent(r.error),
+                  percent(r.floor), percent(r.sampling), percent(r.reached), percent(o.energy_residual));
+  if (near_the_stop(o.energy_residual)) text += "  near the energy balance's stop";
   if (!r.dominated_by.empty()) text += "  dominated";
   if (!o.model.empty()) text += "  " + o.model;
   if (!o.note.empty()) text += "  " + one_line(o.note, kNote);
@@ -37,8 +39,8 @@ std::string study_table(const SettingsStudy& study) {
   std::size_t width = 7;
   for (const SettingResult& r : study.results) width = std::max(width, r.outcome.name.size());
   std::string text =
-      fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
-                  "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached");
+      fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
+                  "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached", "energy");
   for (const SettingResult& r : study.results) text += line_of(r, width);
   return text + verdict_of(study.results.at(study.judged));
 }

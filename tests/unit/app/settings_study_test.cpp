@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "dem/element_test.hpp"
 #include "model/student.hpp"
 #include "tests/support/study_dataset.hpp"
 
@@ -18,7 +19,7 @@ SettingOutcome outcome(const std::string& name, double cost, double error, doubl
   const auto number = [&](const char* q, double x) {
     return StudyQuantity{q, Eigen::VectorXd::Constant(1, x), psi, true};
   };
-  return {name, {}, {cost, 0, 0}, seeds, {number("a", 1 + error), number("b", 1 - error)}, "", ""};
+  return {name, {}, {cost, 0, 0}, seeds, {number("a", 1 + error), number("b", 1 - error)}, {}, 0, "", ""};
 }
 
 TEST(SettingsStudy, NoiseIsTheFloorOfGivenPackingsAndTheSamplingOfChosenOnes) {
@@ -76,6 +77,32 @@ TEST(SettingsStudy, ADefaultIsDominatedByWhatIsCheaperAndNotWorse) {
   EXPECT_EQ(study(outcome("noisy", 3, 0.001, 0.025, seeds)).results[1].dominated_by, Names{});
   // a reference is no competitor
   EXPECT_TRUE(study(outcome("dear", 10, 0.03, 0.01, seeds)).results[0].dominated_by.empty());
+}
+
+// One packing of two: the whole reference is off by chance, its tests of the same packing are not.
+TEST(SettingsStudy, ComparesWithTheReferenceByTheSamePackings) {
+  SettingOutcome few = outcome("few", 1, 0.07, 0.04, {2, 3});
+  few.compared_with = outcome("", 0, 0.05, 0.04, {2, 3}).quantities;
+  const SettingResult r =
+      study_of("chain", "", Packings::chosen, {}, {outcome("reference", 9, 0, 0.03, {1, 2, 3, 4}), few}, 1).results[1];
+  EXPECT_NEAR(r.error, std::hypot(0.02 / 1.05, 0.02 / 0.95) / std::sqrt(2), 1e-14);
+  EXPECT_NEAR(r.floor, 0, 1e-14) << "the packings moved both alike";
+  EXPECT_NEAR(r.reached, std::hypot(r.error, r.sampling), 1e-14);
+}
+
+TEST(SettingsStudy, WhatMayBeStoppedDominatesNothingThatIsSafe) {
+  const std::vector<std::uint64_t> seeds{1, 2};
+  const double stop = dem::ElementTestOptions().stop_energy_residual;
+  const auto dominates = [&](double of_base, double of_other) {
+    SettingOutcome base = outcome("base", 4, 0.02, 0.01, seeds), other = outcome("other", 3, 0.01, 0.01, seeds);
+    base.energy_residual = of_base;
+    other.energy_residual = of_other;
+    const SettingOutcome reference = outcome("reference", 9, 0, 0, seeds);
+    return !study_of("dem", "", Packings::given, {}, {reference, base, other}, 1).results[1].dominated_by.empty();
+  };
+  EXPECT_TRUE(dominates(0.3 * stop, 0.49 * stop));
+  EXPECT_FALSE(dominates(0.3 * stop, 0.51 * stop));
+  EXPECT_TRUE(dominates(0.6 * stop, 0.9 * stop)) << "neither is safe";
 }
 
 TEST(SettingsStudy, WhatShowsLessDominatesNothing) {

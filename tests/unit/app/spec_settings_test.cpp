@@ -45,7 +45,7 @@ TEST_F(SpecSettings, OneThatFailsShowsNothingAndTheOthersGoOn) {
   std::string failing = "time_step_fraction=0.2";
   const auto show = [&](const SpecSetting& setting) -> SettingOutcome {
     if (setting.name == failing) throw Error("the results would be wrong");
-    return {setting.name, setting.changes, {7, 1, 0}, setting.spec.seeds, {}, "", ""};
+    return {setting.name, setting.changes, {7, 1, 0}, setting.spec.seeds, {}, {}, 0, "", ""};
   };
   const std::vector<SettingOutcome> outcomes = outcomes_of(settings, 1, session, show);
   ASSERT_EQ(outcomes.size(), 4u);
@@ -60,7 +60,7 @@ TEST_F(SpecSettings, OneThatFailsShowsNothingAndTheOthersGoOn) {
   }
   const auto stopped = [](const SpecSetting& setting) -> SettingOutcome {
     if (setting.name == "rows=50") throw Interrupted("stopped");
-    return {setting.name, {}, {}, {}, {}, "", ""};
+    return {setting.name, {}, {}, {}, {}, {}, 0, "", ""};
   };
   EXPECT_THROW(outcomes_of(settings, 1, session, stopped), Interrupted);
 }

@@ -14,8 +14,8 @@ namespace {
 
 SettingOutcome outcome(const std::string& name, double cost, double value) {
   const Eigen::MatrixXd psi = Eigen::MatrixXd::Constant(1, 2, 0.005);
-  return {name,     {{"rows", 20}}, {cost, 1, 2}, {1, 2}, {{"s_par", Eigen::VectorXd::Constant(1, value), psi, true}},
-          "memory", "a note"};
+  const StudyQuantity s_par{"s_par", Eigen::VectorXd::Constant(1, value), psi, true};
+  return {name, {{"rows", 20}}, {cost, 1, 2}, {1, 2}, {s_par}, {}, 0.001, "memory", "a note"};
 }
 
 SettingsStudy study(double cheap) {
@@ -39,6 +39,10 @@ TEST(StudyFiles, FollowTheSchema) {
 TEST(StudyFiles, TheTableSaysWhetherTheDefaultIsDominated) {
   EXPECT_NE(study_table(study(1.1)).find("base is not dominated\n"), std::string::npos);
   EXPECT_NE(study_table(study(1)).find("base is dominated by cheap\n"), std::string::npos);
+  SettingsStudy bold = study(1.1);
+  EXPECT_EQ(study_table(bold).find("near the energy balance's stop"), std::string::npos);
+  bold.results[1].outcome.energy_residual = 0.009;
+  EXPECT_NE(study_table(bold).find("near the energy balance's stop"), std::string::npos);
   SettingsStudy nothing = study(1);
   nothing.results[0].reached = std::nan("");
   EXPECT_NE(study_table(nothing).find("base shows nothing to be judged by\n"), std::string::npos);
@@ -59,6 +63,9 @@ TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
   EXPECT_EQ(series(free, "dear").colour, Colour::grey);
   EXPECT_NE(series(free, "cheap").colour, Colour::grey);
   EXPECT_NE(series(free, "cheap").marker, Marker::star);
+  SettingsStudy bold = study(1.1);
+  bold.results[1].outcome.energy_residual = 0.009;
+  EXPECT_EQ(series(figure_of(bold).panels.front(), "cheap").colour, Colour::grey);
   // the shade ends where the sampling does
   const Series& shade = free.series.front();
   ASSERT_EQ(shade.bands.size(), 1u);

@@ -214,6 +214,19 @@ TEST(ElementTest, TheEnergyBalanceStopsAnUnstableRun) {
   }
 }
 
+TEST(ElementTest, TheLargestEnergyResidualIsTheOneThatJustStopsIt) {
+  const State start = relaxed_packing(60, 0.74);
+  const auto path = path_of(start, {segment(Mode::D2, ExtentKind::eps_dev, 0.02)});
+  ElementTestOptions options = fast_options();
+  const double largest = largest_energy_residual(run_element_test(start, path, options, {}).rows);
+  EXPECT_GT(largest, 0);
+  options.stop_energy_residual = 1.001 * largest;
+  EXPECT_NO_THROW(run_element_test(start, path, options, {}));
+  options.stop_energy_residual = 0.999 * largest;
+  EXPECT_THROW(run_element_test(start, path, options, {}), Error);
+  EXPECT_EQ(largest_energy_residual({}), 0);
+}
+
 TEST(ElementTest, RefusesImpossibleOptions) {
   const State start = relaxed_packing(20, 0.75);
   const auto path = path_of(start, {segment(Mode::UNI, ExtentKind::eps_vol, 0.01)});
