@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dem/lane_pass.hpp"
 #include "dem/reference.hpp"
 #include "model/error.hpp"
 #include "tests/support/dem_scene.hpp"
@@ -132,6 +133,25 @@ TEST(Relax, GivesTheSameBitsOnAnyNumberOfThreads) {
     relax(state, engine, RelaxOptions{1e-5, 200}, {});
     EXPECT_EQ(state.packing.sx, reference.packing.sx) << threads << " threads";
     EXPECT_EQ(state.packing.sz, reference.packing.sz) << threads << " threads";
+  }
+}
+
+TEST(Relax, GivesTheSameBitsOnAnyVectors) {
+  const State start = overlapping(300, 0.7);
+  std::vector<State> states;
+  std::vector<Relaxation> results;
+  for (const std::string& target : vector_targets()) {
+    use_vector_target(target);
+    states.push_back(start);
+    results.push_back(relax(states.back(), {}, RelaxOptions{1e-5, 200}, {}));
+  }
+  use_vector_target("");
+  ASSERT_GE(states.size(), 2u);
+  for (std::size_t k = 1; k < states.size(); ++k) {
+    EXPECT_EQ(states[k].packing.sx, states[0].packing.sx) << vector_targets()[k];
+    EXPECT_EQ(states[k].packing.sz, states[0].packing.sz) << vector_targets()[k];
+    EXPECT_EQ(results[k].E_after, results[0].E_after) << vector_targets()[k];
+    EXPECT_EQ(results[k].mean_contact_force, results[0].mean_contact_force) << vector_targets()[k];
   }
 }
 
