@@ -11,6 +11,7 @@ namespace {
 
 TEST(PairListLong, D19MillionConfigurations) {
   const scene::ListFaults faults = scene::random_list_faults(1000000, 42);
+  EXPECT_GT(faults.looked_for, 1000000) << "else there was little to miss";
   testing::expect_figure("D19.missed.million", static_cast<double>(faults.missed), 0);
   testing::expect_figure("D19.double.million", static_cast<double>(faults.twice), 0);
   testing::expect_figure("D19.invented.million", static_cast<double>(faults.invented), 0);

@@ -12,6 +12,7 @@ namespace grainlaw::dem::scene {
 
 struct ListFaults {
   long missed = 0, twice = 0, invented = 0;
+  long looked_for = 0;  ///< pairs that must be listed
 
   long total() const { return missed + twice + invented; }
 };
@@ -39,6 +40,7 @@ inline ListFaults compare(const NeighbourList& list, const Packing& packing) {
   for (const ReferencePair& pair : reference_pairs(packing, list.skin + slack)) {
     const double cutoff = packing.radius[pair.i] + packing.radius[pair.j] + list.skin;
     const bool sure = pair.x_ij.norm() < cutoff - slack;
+    faults.looked_for += sure ? 1 : 0;
     const Eigen::Vector3i& n = pair.image;
     faults.missed += entries.erase({pair.i, pair.j, n.x(), n.y(), n.z()}) == 0 && sure ? 1 : 0;
     faults.missed += entries.erase({pair.j, pair.i, -n.x(), -n.y(), -n.z()}) == 0 && sure ? 1 : 0;
@@ -86,6 +88,7 @@ inline ListFaults random_list_faults(int count, std::uint64_t seed) {
     sum.missed += faults.missed;
     sum.twice += faults.twice;
     sum.invented += faults.invented;
+    sum.looked_for += faults.looked_for;
 
     // Strain the cell and move the spheres as far as the list allows: no contact may be unknown to it.
     const Eigen::Matrix3d ref_H = p.H;
