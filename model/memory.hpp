@@ -3,7 +3,7 @@
 // (docs/decisions/0005-memory-law.md). Compression positive, dimensionless; notation of evolution.hpp, s = sigma'/P.
 //   Delta   distance from s_r, the stress ratio at the last reversal, along N to |s| = s_lim;  xi = |s - s_r|/Delta
 //   flow    = N - q xi^(m-1) (s - s_r)/Delta,       S = <flow,N>, on co-axial paths 1 - q xi^m
-//   dP      = B dx + A1 S de + k (P_t - P) xi de,   P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
+//   dP      = B dx + A1 S de + k (P_t - P) de,      P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
 //   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha
 //   dF'     = lambda ((F_max/s_max) s - F') de - c_F F' <dx>,  <dx> the compressive part of dx
 //   A1      = (2/3)(a2 B <F',N> - <sigma',N>)
@@ -88,16 +88,9 @@ T pressure_density(const LawModuli<T>& m, const T& P) {
   return m.nu * exp((P - m.P_iso) / m.B);
 }
 
-/// Loading since the last reversal.
+/// How the stress ratio answers to shear that loads: N at a reversal, 0 on the limit [-].
 template <class T>
-struct MemoryLoading {
-  T xi{};            ///< part of the way to the limit that is gone: 0 at a reversal, 1 on the limit [-]
-  Deviator<T> flow;  ///< how the stress ratio answers to shear that loads, N at a reversal, 0 on the limit [-]
-};
-
-template <class T>
-MemoryLoading<T> memory_loading(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_lim,
-                                const T& m) {
+Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_lim, const T& m) {
   using std::pow;
   using std::sqrt;
   if ((s - s_r).dot(N) < 0.0) s_r = s;
@@ -111,9 +104,9 @@ MemoryLoading<T> memory_loading(const Deviator<T>& s, Deviator<T> s_r, const Dev
   const T square = s_lim * s_lim - across2, least = kLeastDistance * s_lim;
   const T Delta = square > 0.0 ? T(sqrt(square) - along) : T(-along);
   const Deviator<T> gone = s - s_r;
-  if (Delta < least) return {T(1.0), (N * Delta - gone) / least};
+  if (Delta < least) return (N * Delta - gone) / least;
   const T gone2 = gone.squaredNorm(), xi = gone2 > 0.0 ? T(sqrt(gone2) / Delta) : T(0.0);
-  return {xi, N - gone * (pow(xi, m - 1.0) / Delta)};
+  return N - gone * (pow(xi, m - 1.0) / Delta);
 }
 
 /// Right-hand side without corotational terms; `m` by memory_moduli, with limits along `direction`. Finite for P > 0 and nu_P > nu_c.
@@ -133,13 +126,13 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
   const T relaxation = p.memory.k * (P_t - y.P), dilatancy = relaxation / B;
   const T s_lim = m.s_max + p.memory.chi * positive_part(dilatancy);
-  const MemoryLoading<T> loading = memory_loading(s, y.s_r, N, s_lim, p.memory.m);
+  const Deviator<T> loading = memory_flow(s, y.s_r, N, s_lim, p.memory.m);
   const T A1 = (2.0 / 3.0) * (p.memory.a2 * B * y.F.dot(N) - y.sigma.dot(N));
   const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);
   const T taken = B * std::max(direction.dx, 0.0) * (s - y.F * p.memory.a2).dot(N), added = DG * direction.de;
   const T q = !(taken > 0.0) ? T(1.0) : taken < added ? T(1.0 - taken / added) : T(0.0);
-  const Deviator<T> flow = N + (loading.flow - N) * q;
-  rate.P += (A1 * flow.dot(N) + relaxation * loading.xi) * direction.de;
+  const Deviator<T> flow = N + (loading - N) * q;
+  rate.P += (A1 * flow.dot(N) + relaxation) * direction.de;
   rate.sigma += flow * added;
   rate.F += (s * (m.F_max / m.s_max) - y.F) * (p.memory.lambda * direction.de);
   return rate;

@@ -48,7 +48,7 @@ TEST(Memory, InvariantFormOnCoaxialPaths) {
         dilating += s_lim > 1.01 * s_max ? 1 : 0;
         partly += q > 0 && q < 1 ? 1 : 0;
         not_loading += q == 0 ? 1 : 0;
-        EXPECT_NEAR(r.P, B * dx + (A1 * S * sg + 16.5 * (P_t - P) * xi) * de, 1e-12);
+        EXPECT_NEAR(r.P, B * dx + (A1 * S * sg + 16.5 * (P_t - P)) * de, 1e-12);
         EXPECT_NEAR(r.sigma.dot(kN), A2 * dx + DG * S * sg * de, 1e-12);
         EXPECT_NEAR(r.F.dot(kN), 160 * (F_max / s_max * s - F) * de - 12 * F * std::max(dx, 0.0), 1e-12);
         EXPECT_LE((r.sigma - r.sigma.dot(kN) * kN).norm() + (r.F - r.F.dot(kN) * kN).norm(), 1e-14) << "stays co-axial";
