@@ -7,6 +7,7 @@
 #   PATH.RUNG.QUANTITY.coverage.mean, .single   share of the DEM rows within the band of the mean curve, of a single run
 #   PATH.memory.K.s, .F                strain to the sign change in segment K, law over DEM minus 1
 #   PATH.memory.K.dip                  least P* of segment K over that at its corner, law minus DEM
+#   PATH.RUNG.P_star.largest           of a cyclic path: largest difference of P* in any row, over the largest P* of DEM
 #   dilatancy.RUNG.NU                  rise of P* in D2 at constant volume, law (from its own start) minus DEM
 # Bounds are the goals of the memory rung; the other rungs are stated.
 set -euo pipefail
@@ -43,10 +44,19 @@ held_out() { # folder of a prediction
                   | "\($c.model) \(.quantity) \(.bias) \(.normalised_rms) \(.coverage_mean) \(.coverage_single)"' "$1/comparison.json")
 }
 
+# Of the means over seeds, row by row.
+largest_difference_of_pressure() { # folder rung
+  awk -F, 'FNR == 1 { row = 0; dem = FILENAME ~ /\/dem\//; for (i = 1; i <= NF; i++) column[$i] = i; next }
+           { P[dem, row++] += $column["P_star"]; if (row > rows) rows = row }
+           END { for (k = 0; k < rows; k++) { d = P[0, k] - P[1, k]; if (d < 0) d = -d; if (d > worst) worst = d; if (P[1, k] > top) top = P[1, k] }
+                 print worst / top }' "$1/$2"-measured-s*.csv "$1"/dem/*.csv
+}
+
 reversals() { # folder of a prediction
   local path rung name value bound
   path=$(basename "$1")
   for rung in evolution memory; do
+    figure "$path.$rung.P_star.largest" "$(largest_difference_of_pressure "$1" "$rung")" "$(if [[ $rung == memory ]]; then echo "<=0.03"; else echo stated; fi)"
     while read -r name value; do
       bound=stated
       if [[ $rung == memory ]]; then case $name in *.dip) bound="<=0.03" ;; *) bound="<=0.15" ;; esac; fi
