@@ -200,27 +200,6 @@ TEST_F(ResultFiles, ParametersAreReadBackBitForBit) {
   EXPECT_TRUE(file["parameters"]["shear.nu_c"]["standard_error"].is_null());
 }
 
-TEST_F(ResultFiles, AnOlderFileHasNoMemoryRung) {
-  write_parameters(folder_ / "p.json", {odd_calibration(), "", {}});
-  Json old = read_json(folder_ / "p.json", JsonSource::own);
-  old["format_version"] = 1;
-  write_json(folder_ / "old.json", OrderedJson(old));
-  const ParametersFile read = read_parameters(folder_ / "old.json"), whole = read_parameters(folder_ / "p.json");
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    if (std::string(parameter_table()[i].name).starts_with("memory.")) {
-      EXPECT_EQ(read.calibration.estimates[i].status, fit::Status::not_identified);
-      EXPECT_TRUE(read.calibration.covariance.row(k).isZero(0) && read.calibration.covariance.col(k).isZero(0));
-    } else {
-      EXPECT_EQ(read.calibration.estimates[i].status, whole.calibration.estimates[i].status);
-    }
-  }
-  EXPECT_EQ(refusal([&] { require_parameters(read, Rung::evolution, "old.json"); }), "accepted");
-  EXPECT_EQ(refusal([&] { require_parameters(whole, Rung::memory, "p.json"); }), "accepted");
-  EXPECT_NE(refusal([&] { require_parameters(read, Rung::memory, "old.json"); }).find("older than the memory rung"),
-            std::string::npos);
-}
-
 /// A locale whose numbers look like "1.234,5".
 // Hard case F12.
 TEST_F(ResultFiles, F12DoNotDependOnTheLocale) {

@@ -22,7 +22,7 @@ using testing::path_from;
 constexpr Tolerances kTight{1e-12, 1e-16};
 
 /// With a memory, and nothing at zero but what is meant to be.
-LawParameters<double> parameters() {
+LawParameters<double> law_with_memory() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
   p.memory = {0.8, 0.7, 2, 24, 200, 9, 1.0, 0.7};
@@ -78,7 +78,7 @@ Prediction run(const Case& c, const LawParameters<double>& p, const Sensitivity&
 /// Largest |slope - difference| over the largest |difference| of the same output and parameter on the path; elasticities
 /// below 0.01 (of P for stresses, of 0.1 for ratios and fabric) count as that.
 double farthest(const Case& c) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = law_with_memory();
   const Prediction prediction = run(c, p, {all_parameters(), c.start_from_law});
   double worst = 0;
   for (std::size_t k = 0; k < kParameterCount; ++k) {
@@ -139,7 +139,7 @@ TEST(Sensitivity, IsTheDifferenceOfPredictions) {
 }
 
 TEST(Sensitivity, EndsAtAReversalWithinASegment) {
-  const Prediction prediction = run({Rung::memory, Coupling::energy, turning()}, parameters(), {all_parameters()});
+  const Prediction prediction = run({Rung::memory, Coupling::energy, turning()}, law_with_memory(), {all_parameters()});
   EXPECT_TRUE(prediction.rows[13].state.s_r.isZero(0)) << "virgin at the corner";
   EXPECT_GT(prediction.rows.back().state.s_r.norm(), 0.01) << "and turned after it";
   for (std::size_t i = 0; i < prediction.rows.size(); ++i)
@@ -148,7 +148,7 @@ TEST(Sensitivity, EndsAtAReversalWithinASegment) {
 
 TEST(Sensitivity, OfEqs17And18IsTheirs) {
   // with A = 0 at constant volume Eq. (16) is s = s_max (1 - exp(-beta_s e)), F = F_max (1 - exp(-beta_F e))
-  LawParameters<double> p = parameters();
+  LawParameters<double> p = law_with_memory();
   p.anisotropy.a0 = 0;
   const auto path = path_from(0.74, {leg(Mode::D2, 0.2)});
   const auto index = [](const char* name) { return parameter_index(name); };
@@ -180,7 +180,7 @@ TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
   double off = 0;
   for (const Rung rung : kRungs) {
     const Case c{rung, Coupling::energy, reversal()};
-    const Prediction without = run(c, parameters()), with = run(c, parameters(), {all_parameters()});
+    const Prediction without = run(c, law_with_memory()), with = run(c, law_with_memory(), {all_parameters()});
     EXPECT_TRUE(without.slopes.empty());
     ASSERT_EQ(with.slopes.size(), with.rows.size());
     for (std::size_t i = 0; i < with.rows.size(); ++i) {
@@ -194,7 +194,7 @@ TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
 TEST(Sensitivity, EndsWhereTheStateUnjams) {
   const auto path = path_from(0.70, {leg(Mode::D2, 0.05), leg_to(Mode::ISO, 0.63, true), leg_to(Mode::ISO, 0.72)});
   for (const Rung rung : kRungs) {
-    const Prediction prediction = run({rung, Coupling::energy, path}, parameters(), {all_parameters()});
+    const Prediction prediction = run({rung, Coupling::energy, path}, law_with_memory(), {all_parameters()});
     ASSERT_TRUE(prediction.unjammed);
     bool jammed = true;
     for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
@@ -207,7 +207,7 @@ TEST(Sensitivity, EndsWhereTheStateUnjams) {
 }
 
 TEST(Sensitivity, IsThatOfTheImplicitMethodToo) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = law_with_memory();
   const auto path = reversal();
   Tolerances tolerances{1e-10, 1e-14};
   const auto slopes = [&](Method method) {

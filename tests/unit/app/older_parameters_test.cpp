@@ -1,0 +1,44 @@
+// parameters.json of version 1: its memory rung is of another law.
+#include <Eigen/Core>
+#include <string>
+
+#include "app/files/json_document.hpp"
+#include "app/files/parameters_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+using testing::refusal;
+
+class OlderParameters : public testing::TemporaryFolder {};
+
+TEST_F(OlderParameters, HaveNoMemoryRung) {
+  fit::Calibration c;
+  c.parameters = published_parameters();
+  c.nu_min = 0.68;
+  c.nu_max = 0.82;
+  c.parameters.memory = {0.9, 0.7, 2, 10, 200, 10, 1, 0.9};
+  c.covariance = Eigen::MatrixXd::Identity(kParameterCount, kParameterCount);
+  for (std::size_t i = 0; i < kParameterCount; ++i)
+    c.estimates[i] = {*fields(c.parameters)[i], 1, fit::Status::fitted, "", 4};
+  write_parameters(folder_ / "p.json", {c, "", {}});
+  Json old = read_json(folder_ / "p.json", JsonSource::own);
+  old["format_version"] = 1;
+  write_json(folder_ / "old.json", OrderedJson(old));
+
+  const ParametersFile read = read_parameters(folder_ / "old.json"), whole = read_parameters(folder_ / "p.json");
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const bool memory = std::string(parameter_table()[i].name).starts_with("memory.");
+    EXPECT_EQ(read.calibration.estimates[i].status, memory ? fit::Status::not_identified : fit::Status::fitted);
+    EXPECT_EQ(read.calibration.covariance(k, k), memory ? 0 : 1);
+  }
+  EXPECT_EQ(refusal([&] { require_parameters(read, Rung::evolution, "old.json"); }), "accepted");
+  EXPECT_EQ(refusal([&] { require_parameters(whole, Rung::memory, "p.json"); }), "accepted");
+  EXPECT_NE(refusal([&] { require_parameters(read, Rung::memory, "old.json"); }).find("older than the memory rung"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace grainlaw::app
