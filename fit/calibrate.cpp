@@ -17,8 +17,6 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kNoError = std::numeric_limits<double>::quiet_NaN();
-
 /// Laws of Eq. (20) of which not one shear test says anything.
 std::vector<std::string> unseen_laws(const std::vector<ShearFit>& shear) {
   std::vector<std::string> names;
@@ -35,7 +33,7 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
                     const CalibrationOptions& options) {
   const auto estimate = [&](const char* name) -> Estimate& { return calibration.estimates[parameter_index(name)]; };
   if (options.coupling == Coupling::energy) {
-    estimate("anisotropy.a0") = {0, kNoError, Status::not_identified, "not part of the law with coupling energy"};
+    estimate("anisotropy.a0") = {0, kUndefined, Status::not_identified, "not part of the law with coupling energy"};
     const auto i = static_cast<Eigen::Index>(parameter_index("anisotropy.a1"));
     const auto j = static_cast<Eigen::Index>(parameter_index("anisotropy.a2"));
     const TiedCoupling tied = tied_a1(trajectories, calibration.parameters, estimate("anisotropy.a2"),
@@ -45,14 +43,14 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
     calibration.errors.influence.row(i) = tied.influence;
     calibration.errors.degrees_of_freedom(i) = tied.a1.degrees_of_freedom;
   } else {
-    estimate("anisotropy.a1") = {0, kNoError, Status::not_identified, "not part of the law with coupling single"};
-    estimate("anisotropy.a2") = {0, kNoError, Status::not_identified, "not part of the law with coupling single"};
+    estimate("anisotropy.a1") = {0, kUndefined, Status::not_identified, "not part of the law with coupling single"};
+    estimate("anisotropy.a2") = {0, kUndefined, Status::not_identified, "not part of the law with coupling single"};
   }
 }
 
 void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
                      const CalibrationOptions& options, const RunControl& control) {
-  calibration.estimates[parameter_index("memory.m")] = {calibration.parameters.memory.m, kNoError, Status::fixed,
+  calibration.estimates[parameter_index("memory.m")] = {calibration.parameters.memory.m, kUndefined, Status::fixed,
                                                         "by docs/decisions/0005-memory-law.md"};
   for (const char* group :
        {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {

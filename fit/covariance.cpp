@@ -1,6 +1,7 @@
 #include "fit/covariance.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -38,6 +39,15 @@ Eigen::MatrixXd inverse_hessian(const Eigen::MatrixXd& M) {
   return W * solver.eigenvalues().cwiseMax(kFlattest).cwiseMin(kSteepest).cwiseInverse().asDiagonal() * W.transpose();
 }
 
+/// R of J = Q R, square: rows of zeros where J has less rows than columns.
+Eigen::MatrixXd triangle_of(const Eigen::MatrixXd& J) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(J);
+  const Eigen::Index rows = std::min(J.rows(), J.cols());
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(J.cols(), J.cols());
+  R.topRows(rows) = qr.matrixQR().topRows(rows).triangularView<Eigen::Upper>();
+  return R;
+}
+
 /// `S` of the columns of `J`, or empty.
 Factor factor_of(const Eigen::MatrixXd& J, const Eigen::MatrixXd& S) {
   const Eigen::Index p = J.cols();
@@ -49,7 +59,9 @@ Factor factor_of(const Eigen::MatrixXd& J, const Eigen::MatrixXd& S) {
     inverse_norm(k) = norm > 0 ? 1 / norm : 0;
     if (!(norm > 0)) factor.identified[static_cast<std::size_t>(k)] = false;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(J * inverse_norm.asDiagonal(), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  // Those of R; Jacobi's rotations alone are the part of the decomposition that is quick to compile.
+  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(triangle_of(J * inverse_norm.asDiagonal()),
+                                                                         Eigen::ComputeFullV);
   const Eigen::VectorXd& sigma = svd.singularValues();
   Eigen::Index rank = 0;
   while (rank < sigma.size() && sigma(rank) > kNullSingularValue * sigma(0)) ++rank;

@@ -12,8 +12,6 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kNearestJamming = 1e-4;  // nu - nu_c that the lowest row keeps
-
 using Jet3 = ceres::Jet<double, 3>;
 using Jet2 = ceres::Jet<double, 2>;
 using Jet1 = ceres::Jet<double, 1>;

@@ -10,8 +10,7 @@
 namespace grainlaw::fit {
 namespace {
 
-using Jet = ceres::Jet<double, 3>;
-constexpr int kDensitiesNeeded = 3;
+using Jet3 = ceres::Jet<double, 3>;
 
 ExponentialLaw<double> best_start(const std::vector<Eigen::Vector2d>& values, const Eigen::VectorXd& weight,
                                   double nu_c, const std::array<FreeParameter, 3>& bounds) {
@@ -68,7 +67,7 @@ DensityLawProblem density_law_problem(const std::string& name, const std::vector
     block.cluster = cluster[i];
     block.weight = weight.segment<1>(static_cast<Eigen::Index>(i));
     block.channels.push_back({name, 0, 1, 0, std::abs(values[i](1))});
-    block.evaluate = differentiated<Jet>(
+    block.evaluate = differentiated<Jet3>(
         [nu = values[i](0), Q = values[i](1), nu_c](const auto* x, auto* misfit) {
           using T = std::decay_t<decltype(*x)>;
           misfit[0] = ExponentialLaw<T>{x[0], x[1], x[2]}.value(nu, T(nu_c)) - Q;

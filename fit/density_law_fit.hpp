@@ -16,6 +16,8 @@ struct ShearQuantity {
 };
 extern const std::array<ShearQuantity, 4> kShearQuantities;
 
+inline constexpr int kDensitiesNeeded = 3;  ///< for the three parameters of a law
+
 struct DensityLawProblem {
   std::vector<FreeParameter> parameters;  ///< Q_limit, Q_c, alpha
   std::vector<ResidualBlock> blocks;      ///< one row each

@@ -17,7 +17,6 @@ namespace {
 constexpr double kFelt = 0.5;             // norm of weighted misfits below which a change of a parameter goes unnoticed
 constexpr double kVague = 0.5;            // relative error beyond which a rate or a coupling is no number
 constexpr double kVolumetricPath = 1e-3;  // |d eps_vol| of a trajectory that says something about the coupling
-constexpr int kDensitiesNeeded = 3;
 
 struct Pair {
   const char *limit, *rate;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit/density_series.hpp"
 #include "fit/trajectory_misfit.hpp"
 
 namespace grainlaw::fit {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr int kMostParameters = 16;
 using Jet = ceres::Jet<double, kMostParameters>;
-constexpr double kNearestJamming = 1e-4;  // nu - nu_c that the lowest row keeps
 
 double least_nu(const std::vector<Trajectory>& trajectories) {
   double least = 1;

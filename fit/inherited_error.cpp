@@ -9,7 +9,8 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kStep = 1e-6;  // of a parameter; the quotient's own error is about as small, errors need two digits
+constexpr double kLinearStep =
+    1e-6;  // of a parameter; the quotient's own error is about as small, errors need two digits
 
 bool has_error(const Eigen::MatrixXd& influence, Eigen::Index k) { return influence.row(k).squaredNorm() > 0; }
 
@@ -32,7 +33,7 @@ Eigen::MatrixXd gradient_changes(
       largest = std::max(
           largest, std::abs(influence(static_cast<Eigen::Index>(k), c)) / std::max(std::abs(*field[index[k]]), 1e-3));
     if (!(largest > 0)) continue;
-    const double part = kStep / largest;
+    const double part = kLinearStep / largest;
     for (std::size_t k = 0; k < index.size(); ++k)
       *field[index[k]] += part * influence(static_cast<Eigen::Index>(k), c);
     if (evaluate(blocks_at(moved), solution.x, threads, misfit.data(), jacobian.data()))

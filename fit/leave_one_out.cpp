@@ -9,8 +9,6 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
-
 LeftOut without(std::uint64_t seed, const std::vector<TestRecord>& tests, const CalibrationOptions& options,
                 const RunControl& control) {
   std::vector<TestRecord> part;

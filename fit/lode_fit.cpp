@@ -6,8 +6,8 @@
 namespace grainlaw::fit {
 namespace {
 
-const std::vector<std::string> kGivenLaws{"coordination", "rattlers",   "pressure",    "stress_ratio_max",
-                                          "stress_rate",  "fabric_max", "fabric_rate", "anisotropy"};
+const std::vector<std::string> kGivenToLode{"coordination", "rattlers",   "pressure",    "stress_ratio_max",
+                                            "stress_rate",  "fabric_max", "fabric_rate", "anisotropy"};
 
 StageFit no_effect() {
   StageFit fit = skipped_stage("lode", lode_parameters(), "taken as none: the shear has one Lode angle; add D3 to D2");
@@ -51,7 +51,7 @@ StageFit fit_lode(const std::vector<Trajectory>& others, LawParameters<double>& 
   if (!fit.solution.defined) return fit;
   law.lode = {fit.solution.x(0), fit.solution.x(1)};
   inherit_error(
-      kGivenLaws, found, law,
+      kGivenToLode, found, law,
       [&](const LawParameters<double>& given) { return evolution_problem(others, given, free, options).blocks; },
       options.threads, fit);
   return fit;

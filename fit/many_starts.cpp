@@ -8,8 +8,8 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kSameCost = 1e-6;  // relative difference of two solutions that are one
-constexpr double kExact = 1e-16;    // of the cost at the start: a solution that meets the data exactly
+constexpr double kSameCost = 1e-6;    // relative difference of two solutions that are one
+constexpr double kExactCost = 1e-16;  // of the cost at the start: a solution that meets the data exactly
 constexpr double kDensityRange = 0.005;
 
 }  // namespace
@@ -34,7 +34,7 @@ std::vector<FreeParameter> start_number(const std::vector<FreeParameter>& from, 
 
 Solution best_of(std::vector<Solution> solutions, StartSearch& search) {
   double rounding = 0;
-  for (const Solution& solution : solutions) rounding = std::max(rounding, kExact * solution.initial_cost);
+  for (const Solution& solution : solutions) rounding = std::max(rounding, kExactCost * solution.initial_cost);
   const auto within = [&](double cost, double least) { return cost <= least * (1 + kSameCost) + rounding; };
   std::size_t best = 0;
   for (std::size_t i = 1; i < solutions.size(); ++i) {

@@ -13,13 +13,13 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr int kMostParameters = 7;
-using Jet = ceres::Jet<double, kMostParameters>;
-constexpr double kVague = 0.5;  // relative error beyond which a parameter is no number
-constexpr double kRounding = 1e-9;
-const std::vector<std::string> kGivenLaws{"coordination",        "rattlers",        "pressure",
-                                          "steady_coordination", "steady_rattlers", "steady_pressure",
-                                          "stress_ratio_max",    "fabric_max"};
+constexpr int kMemoryParameters = 7;
+using MemoryJet = ceres::Jet<double, kMemoryParameters>;
+constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number
+constexpr double kWindowRounding = 1e-9;
+const std::vector<std::string> kGivenToMemory{"coordination",        "rattlers",        "pressure",
+                                              "steady_coordination", "steady_rattlers", "steady_pressure",
+                                              "stress_ratio_max",    "fabric_max"};
 
 std::vector<std::string> free_names(bool volumetric) {
   std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.chi"};
@@ -46,7 +46,7 @@ double mean_pressure(const Trajectory& t) {
 void add_channel(const Trajectory& t, const std::string& quantity, Counted counted, ResidualBlock& block,
                  double (*datum)(const Trajectory&, const LawState<double>&), double scale) {
   const int rows = static_cast<int>(t.rows.size()), first = rows * static_cast<int>(block.channels.size());
-  const auto in = [&](const TrajectoryRow& row) { return t.direction.de * row.e <= counted.window + kRounding; };
+  const auto in = [&](const TrajectoryRow& row) { return t.direction.de * row.e <= counted.window + kWindowRounding; };
   const auto inside = std::count_if(t.rows.begin(), t.rows.end(), in), outside = rows - inside;
   Channel channel{quantity, first, rows, t.excluded, 0};
   for (int i = 0; i < rows; ++i) {
@@ -58,8 +58,8 @@ void add_channel(const Trajectory& t, const std::string& quantity, Counted count
   block.channels.push_back(channel);
 }
 
-ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, const std::vector<std::size_t>& index,
-                       const CalibrationOptions& options) {
+ResidualBlock memory_block(const Trajectory& t, const LawParameters<double>& fixed,
+                           const std::vector<std::size_t>& index, const CalibrationOptions& options) {
   constexpr Counted all{1e300}, none{-1};
   const bool shear = constant_volume(t);
   ResidualBlock block;
@@ -77,12 +77,12 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
       t, "F_par", shear ? Counted{options.lag_window} : all, block,
       [](const Trajectory& of, const LawState<double>& y) { return y.F.dot(of.axes.front()); }, options.fabric_scale);
   block.evaluate =
-      differentiated<Jet>(TrajectoryMisfit{t, fixed, index, Rung::memory, Coupling::energy, options.max_step, 1},
-                          static_cast<int>(index.size()), block.rows());
+      differentiated<MemoryJet>(TrajectoryMisfit{t, fixed, index, Rung::memory, Coupling::energy, options.max_step, 1},
+                                static_cast<int>(index.size()), block.rows());
   return block;
 }
 
-std::string window_text(const CalibrationOptions& options) {
+std::string memory_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative "
       "to the mean, scale {:g}, s_par of eps_dev <= {:g} and with the same weight of the rest, scale {:g}, F_par of "
@@ -105,7 +105,7 @@ MemoryProblem memory_problem(const std::vector<Trajectory>& trajectories, const 
     problem.parameters.push_back(free_parameter(name, *value[index.back()]));
   }
   for (const Trajectory& t : trajectories) {
-    if (!t.axes.empty() && !t.rows.empty()) problem.blocks.push_back(block_of(t, start, index, options));
+    if (!t.axes.empty() && !t.rows.empty()) problem.blocks.push_back(memory_block(t, start, index, options));
   }
   return problem;
 }
@@ -117,12 +117,12 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
       "back";
   const bool volumetric = contains_anisotropy(trajectories);
   const MemoryProblem problem = memory_problem(trajectories, law, volumetric, options);
-  StageFit fit = fit_stage("memory", window_text(options), problem.parameters, problem.blocks,
+  StageFit fit = fit_stage("memory", memory_window(options), problem.parameters, problem.blocks,
                            "the trajectories do not determine it; shear at more and at lower densities",
                            options.threads, control, {options.loss, options.starts});
   if (fit.solution.defined) {
     inherit_error(
-        kGivenLaws, found, law,
+        kGivenToMemory, found, law,
         [&](const LawParameters<double>& given) {
           return memory_problem(trajectories, given, volumetric, options).blocks;
         },
@@ -133,7 +133,7 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
       const double value = fit.solution.x(static_cast<Eigen::Index>(k));
       *field[parameter_index(name)] = value;
       const double error = fit.stage.estimates[k].estimate.standard_error;
-      if (name != "memory.chi" && error > kVague * std::abs(value))  // chi may be none
+      if (name != "memory.chi" && error > kVagueParameter * std::abs(value))  // chi may be none
         fit.mark_not_identified(
             name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
                       (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));

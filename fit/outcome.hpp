@@ -11,6 +11,8 @@
 
 namespace grainlaw::fit {
 
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  ///< written as null
+
 enum class Status {
   fitted,          ///< free in the last stage that it appears in
   fixed,           ///< not fitted by decision (Eq. (20)'s nu_c)
@@ -21,12 +23,11 @@ enum class Status {
 std::string to_string(Status status);
 
 struct Estimate {
-  double value = 0;  ///< not to be read when not identified
-  double standard_error =
-      std::numeric_limits<double>::quiet_NaN();  ///< over packings, covariance.hpp; NaN unless fitted or tied
+  double value = 0;                    ///< not to be read when not identified
+  double standard_error = kUndefined;  ///< over packings, covariance.hpp; NaN unless fitted or tied
   Status status = Status::not_identified;
-  std::string note;  ///< why, e.g. which experiment would identify it; may be empty
-  double degrees_of_freedom = std::numeric_limits<double>::quiet_NaN();  ///< of the standard error; NaN without one
+  std::string note;                        ///< why, e.g. which experiment would identify it; may be empty
+  double degrees_of_freedom = kUndefined;  ///< of the standard error; NaN without one
 
   /// Half of the 95 % interval, by Student's t; NaN without an error.
   double half_width() const;
@@ -65,8 +66,8 @@ struct Profile {
 
 /// Where solutions from several starts ended, many_starts.hpp.
 struct StartSearch {
-  int tried = 1, at_minimum = 1;                                ///< starts; those that ended at the lowest cost
-  double next_cost = std::numeric_limits<double>::quiet_NaN();  ///< of the next minimum; NaN: there is none
+  int tried = 1, at_minimum = 1;  ///< starts; those that ended at the lowest cost
+  double next_cost = kUndefined;  ///< of the next minimum; NaN: there is none
 };
 
 /// A calibration without one packing, leave_one_out.hpp.

@@ -13,13 +13,13 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr std::size_t kReach = 2;   // rows to either side
-constexpr double kWhite = 1.2105;   // 1.4826/sqrt(1.5): white noise over the median magnitude of its second differences
-constexpr double kStandsOut = 8;    // times the scatter
-constexpr double kMaterial = 5;     // times the scale; rattlers are counted, and jump by more than their scatter
-constexpr double kRounding = 1e-9;  // relative, of series without any scatter
-constexpr std::size_t kFewest = 8;  // rows from which a scatter can be told
-constexpr std::size_t kNamed = 8;   // rows named in a warning
+constexpr std::size_t kReach = 2;  // rows to either side
+constexpr double kWhite = 1.2105;  // 1.4826/sqrt(1.5): white noise over the median magnitude of its second differences
+constexpr double kStandsOut = 8;   // times the scatter
+constexpr double kMaterial = 5;    // times the scale; rattlers are counted, and jump by more than their scatter
+constexpr double kNoScatter = 1e-9;  // relative, of series without any scatter
+constexpr std::size_t kFewest = 8;   // rows from which a scatter can be told
+constexpr std::size_t kNamed = 8;    // rows named in a warning
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -98,7 +98,7 @@ std::vector<std::size_t> outliers_of(const std::vector<double>& x, double least)
   }
   const double sigma = kWhite * median(std::move(bend));
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
-    const double usual = std::max({sigma, scatter[i], kRounding * std::abs(x[i])});
+    const double usual = std::max({sigma, scatter[i], kNoScatter * std::abs(x[i])});
     if (z[i] > kStandsOut * usual && z[i] > least) found.push_back(i);
   }
   return found;

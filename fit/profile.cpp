@@ -13,7 +13,6 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAtTheEnd = 0.02;  // relative distance from which the rest is a straight line
 constexpr int kExpansions = 8, kRefinements = 14;
 constexpr SolverEffort kRefit{2, 4};  // from a neighbour's solution

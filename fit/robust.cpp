@@ -10,12 +10,12 @@ namespace grainlaw::fit {
 namespace {
 
 constexpr double kHuber = 1.345;
-constexpr double kNormalMedian = 1.4826;  // standard deviation over median magnitude of normal noise
-constexpr double kSettled = 1e-3;         // largest change of a factor at the end
-constexpr double kExact = 1e-9;           // of the data: below, misfits are rounding and no row stands out
+constexpr double kNormalMedian = 1.4826;  // standard deviation over upper_median magnitude of normal noise
+constexpr double kSettledFactor = 1e-3;   // largest change of a factor at the end
+constexpr double kExactMisfit = 1e-9;     // of the data: below, misfits are rounding and no row stands out
 constexpr int kRounds = 30;
 
-double median(std::vector<double> values) {
+double upper_median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -39,11 +39,11 @@ Eigen::VectorXd factors_of(const std::vector<ResidualBlock>& blocks, const Eigen
   each_row([&](const Channel& channel, Eigen::Index, double distance, double weight) {
     off[channel.quantity].push_back(distance);
     double& floor = least[channel.quantity];
-    floor = std::max(floor, kExact * weight * channel.max_abs_data);
+    floor = std::max(floor, kExactMisfit * weight * channel.max_abs_data);
   });
   std::map<std::string, double> reach;
   for (const auto& [quantity, values] : off)
-    reach[quantity] = kHuber * std::max(kNormalMedian * median(values), least[quantity]);
+    reach[quantity] = kHuber * std::max(kNormalMedian * upper_median(values), least[quantity]);
   Eigen::VectorXd factor = Eigen::VectorXd::Ones(r.size());
   each_row([&](const Channel& channel, Eigen::Index row, double distance, double) {
     if (distance > reach[channel.quantity]) factor(row) = std::sqrt(reach[channel.quantity] / distance);
@@ -65,7 +65,7 @@ Solution solve_huber(const std::vector<FreeParameter>& parameters, const std::ve
   for (int round = 0; round < kRounds && solution.defined; ++round) {
     const Eigen::VectorXd next = factors_of(blocks, solution.misfit);
     const double change = next.size() > 0 ? (next - factor).cwiseAbs().maxCoeff() : 0;
-    if (change < kSettled) break;
+    if (change < kSettledFactor) break;
     factor = next;
     Eigen::Index first = 0;
     for (std::size_t b = 0; b < blocks.size(); ++b) {

@@ -16,12 +16,11 @@
 namespace grainlaw::fit {
 namespace {
 
-using Jet = ceres::Jet<double, 2>;
+using Jet2 = ceres::Jet<double, 2>;
 
 constexpr double kShownSaturation = 0.5;  // rate times strain; below, limit and rate are one number, the slope
 constexpr double kLargestLimit = 3;       // s_max and F_max: far beyond any frictionless packing
 constexpr double kLargestRate = 2000;     // beta: a strain of 5e-4, less than a row
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 /// Mean of the last tenth of the rows, and 1/beta as the area between the limit and the curve.
 void guess(const std::vector<double>& e, const std::vector<double>& value, double start, double& limit, double& rate) {
@@ -117,7 +116,7 @@ SaturationProblem saturation_problem(const std::string& test, const std::string&
     channel.max_abs_data = std::max(channel.max_abs_data, std::abs(value[i]));
   }
   block.channels.push_back(channel);
-  block.evaluate = differentiated<Jet>(
+  block.evaluate = differentiated<Jet2>(
       [e = problem.eps_dev, datum = problem.value, start](const auto* x, auto* misfit) {
         using T = std::decay_t<decltype(*x)>;
         for (std::size_t i = 0; i < e.size(); ++i) misfit[i] = saturating(x[0], T(start), x[1], e[i]) - datum[i];

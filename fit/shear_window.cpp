@@ -6,16 +6,16 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kStart = 1e-12;    // strain up to which a row is the start itself
-constexpr double kRounding = 1e-9;  // a row meant to lie on a window's end belongs to it
+constexpr double kStart = 1e-12;          // strain up to which a row is the start itself
+constexpr double kStrainRounding = 1e-9;  // a row meant to lie on a window's end belongs to it
 
 double weight_of(std::size_t rows) { return 1 / std::sqrt(static_cast<double>(std::max(rows, kFullWindow))); }
 
 }  // namespace
 
 RowWeights shear_window(const std::vector<double>& eps_dev, const CalibrationOptions& options) {
-  const auto in_rate = [&](double e) { return e > kStart && e <= options.rate_window + kRounding; };
-  const auto in_steady = [&](double e) { return e >= options.steady_from - kRounding && !in_rate(e); };
+  const auto in_rate = [&](double e) { return e > kStart && e <= options.rate_window + kStrainRounding; };
+  const auto in_steady = [&](double e) { return e >= options.steady_from - kStrainRounding && !in_rate(e); };
   const auto rate = static_cast<std::size_t>(std::count_if(eps_dev.begin(), eps_dev.end(), in_rate));
   const auto steady = static_cast<std::size_t>(std::count_if(eps_dev.begin(), eps_dev.end(), in_steady));
   RowWeights rows;

@@ -16,8 +16,6 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kNoError = std::numeric_limits<double>::quiet_NaN();
-
 std::vector<TestResidual> misfit_per_test(const std::vector<ResidualBlock>& blocks, const Solution& solution) {
   std::vector<TestResidual> tests;
   Eigen::Index first = 0;
@@ -84,9 +82,9 @@ void StageFit::mark_not_identified(const std::string& name, const std::string& n
   const std::size_t k = position(stage, name);
   Estimate& estimate = stage.estimates[k].estimate;
   estimate.status = Status::not_identified;
-  estimate.standard_error = kNoError;
+  estimate.standard_error = kUndefined;
   estimate.note = note;
-  estimate.degrees_of_freedom = kNoError;
+  estimate.degrees_of_freedom = kUndefined;
   influence.row(static_cast<Eigen::Index>(k)).setZero();
 }
 
@@ -130,7 +128,7 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
     const auto i = static_cast<Eigen::Index>(k);
     Estimate& estimate = stage.estimates[k].estimate;
     estimate.value = solution.x(i);
-    estimate.standard_error = kNoError;
+    estimate.standard_error = kUndefined;
     if (solution.at_bound[k]) {
       estimate.status = Status::at_bound;
       estimate.note = fmt::format("ended on its bound {:g}", estimate.value);
@@ -157,7 +155,7 @@ StageFit skipped_stage(const std::string& name, const std::vector<std::string>& 
   fit.stage.converged = true;
   const auto n = static_cast<Eigen::Index>(parameters.size());
   fit.influence = Eigen::MatrixXd::Zero(n, 0);
-  fit.solution.x = Eigen::VectorXd::Constant(n, kNoError);
+  fit.solution.x = Eigen::VectorXd::Constant(n, kUndefined);
   for (const std::string& parameter : parameters) {
     fit.stage.estimates.push_back({parameter, {}});
     fit.mark_not_identified(parameter, remedy);

@@ -17,8 +17,7 @@ Calibration nothing_known() {
   calibration.parameters = start_parameters();
   calibration.errors = no_errors();
   calibration.covariance = calibration.errors.covariance();
-  calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c,
-                                                          std::numeric_limits<double>::quiet_NaN(), Status::fixed,
+  calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c, kUndefined, Status::fixed,
                                                           "degenerate with Q_c and alpha of Eq. (20)"};
   return calibration;
 }

@@ -10,12 +10,12 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr std::size_t kFewest = 8;
+constexpr std::size_t kFewestRows = 8;
 
 }  // namespace
 
 int steady_row(const std::vector<double>& x) {
-  if (x.size() < kFewest) return -1;
+  if (x.size() < kFewestRows) return -1;
   const std::size_t last = x.size() / 2;
   std::size_t best = last;
   double least = std::numeric_limits<double>::infinity(), sum = 0, squares = 0, n = 0;

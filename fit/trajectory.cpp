@@ -10,7 +10,7 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kOffPath = 1e-6;  // strain by which a row may miss its segment
+constexpr double kOffTrajectory = 1e-6;  // strain by which a row may miss its segment
 
 /// N of every segment, orthonormalised in order; directions that lie in the span already add nothing.
 std::vector<Deviator<double>> axes_of(const TestRecord& test) {
@@ -27,7 +27,7 @@ std::vector<Deviator<double>> axes_of(const TestRecord& test) {
 double parameter_of(const TestRecord& test, std::size_t number, const Eigen::Matrix3d& from, const Eigen::Matrix3d& D) {
   const Eigen::Matrix3d strain = test.rows[number].strain.tensor - from;
   const double e = strain.cwiseProduct(D).sum() / D.squaredNorm();
-  if ((strain - e * D).norm() > kOffPath || e < -kOffPath) {
+  if ((strain - e * D).norm() > kOffTrajectory || e < -kOffTrajectory) {
     throw InvalidInput(
         fmt::format("test {}: row {} is not on segment {} of its path (off by a strain of {:.2g}); check the "
                     "strain columns and the path",

@@ -10,9 +10,9 @@
 namespace grainlaw::predict {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFirstStrain = 0.01;      // before it the start, not the law, is compared
-constexpr double kStrainTolerance = 1e-8;  // what points_of() accepts, and some
+constexpr double kFirstStrain = 0.01;  // before it the start, not the law, is compared
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double kStrainMismatch = 1e-8;  // what points_of() accepts, and some
 
 void check_pairs(const Prediction& prediction, const TestRecord& test) {
   if (prediction.rows.size() > test.rows.size()) {
@@ -21,7 +21,7 @@ void check_pairs(const Prediction& prediction, const TestRecord& test) {
   }
   for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
     const double off = (prediction.rows[i].strain.tensor - test.rows[i].strain.tensor).norm();
-    if (!(off <= kStrainTolerance)) {
+    if (!(off <= kStrainMismatch)) {
       throw InvalidInput(
           fmt::format("{}: row {}: predicted at another strain than observed ({:.3g} apart); predict at "
                       "points_of(test)",
@@ -39,7 +39,7 @@ struct Coverage {
     ++rows;
     if (std::abs(difference) <= half_width) ++within;
   }
-  double share() const { return rows > 0 ? static_cast<double>(within) / rows : kNaN; }
+  double share() const { return rows > 0 ? static_cast<double>(within) / rows : kUndefined; }
 };
 
 template <class Predicted, class Observed>
@@ -67,15 +67,15 @@ QuantityComparison compare_quantity(const std::string& name, const Prediction& p
     }
   }
   if (result.rows == 0) {
-    result.bias = result.rms = result.normalised_rms = result.largest = kNaN;
-    result.largest_at_eps_dev = result.largest_at_nu = kNaN;
+    result.bias = result.rms = result.normalised_rms = result.largest = kUndefined;
+    result.largest_at_eps_dev = result.largest_at_nu = kUndefined;
     return result;
   }
   result.coverage_mean = mean.share();
   result.coverage_single = single.share();
   result.bias = sum / result.rows;
   result.rms = std::sqrt(sum_of_squares / result.rows);
-  result.normalised_rms = largest_observed > 0 ? result.rms / largest_observed : kNaN;
+  result.normalised_rms = largest_observed > 0 ? result.rms / largest_observed : kUndefined;
   return result;
 }
 

@@ -14,19 +14,11 @@
 #include "model/error.hpp"
 #include "predict/ode_callbacks.hpp"
 #include "predict/state_vector.hpp"
+#include "predict/sundials_context.hpp"
 #include "predict/sundials_handle.hpp"
 
 namespace grainlaw::predict {
 namespace {
-
-void free_context(SUNContext context) { SUNContext_Free(&context); }
-void free_memory(void* memory) { CVodeFree(&memory); }
-
-SUNContext new_context() {
-  SUNContext context = nullptr;
-  SUNContext_Create(nullptr, &context);
-  return created(context, "the context of CVODE");
-}
 
 // CVODE bounds the error of one step; that of the result, a sum over the steps, is larger. Against the closed forms (hard
 // cases O1, O6, all densities) it reaches 14 times the bound with Adams. Half the bound, and no orders above 6, whose
@@ -43,7 +35,7 @@ constexpr double kLeastSlopeTolerance = 1e-10;
 struct Cvode::Impl : OdeCallbacks {
   OdeEvent event;
   // Destroyed in reverse order: the solver's memory first, the context last.
-  Owned<SUNContext, free_context> context{new_context()};
+  OwnedContext context = new_context();
   Owned<N_Vector, N_VDestroy> y;
   Owned<SUNMatrix, SUNMatDestroy> matrix;
   Owned<SUNLinearSolver, SUNLinSolFree> linear;
@@ -55,7 +47,8 @@ struct Cvode::Impl : OdeCallbacks {
   std::vector<N_Vector> slope_error_handles;
   Owned<SUNNonlinearSolver, SUNNonlinSolFree> slopes_nonlinear;
   bool carried = false;  // since the last start()
-  Owned<void*, free_memory> memory;
+  static void release(void* memory) { CVodeFree(&memory); }
+  Owned<void*, release> memory;
 
   bool initialised = false;
   double t = 0;               // of the last start() or advance()

@@ -55,10 +55,10 @@ double progress(const PathSegment& segment, const ControlledState& start, const 
 }
 
 /// One segment of the path under the law.
-class Walk {
+class ControlledWalk {
  public:
-  Walk(const LawParameters<double>& parameters, Rung rung, Coupling coupling, const PathSegment& segment, double nu_0,
-       const ControlledState& start, double P_floor, const Tolerances& tolerances)
+  ControlledWalk(const LawParameters<double>& parameters, Rung rung, Coupling coupling, const PathSegment& segment,
+                 double nu_0, const ControlledState& start, double P_floor, const Tolerances& tolerances)
       : segment_(segment),
         nu_0_(nu_0),
         start_(start),
@@ -162,7 +162,7 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
     };
     const ControlledState from = begin();
     // Once to see where it ends, once for the rows.
-    Walk first(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
+    ControlledWalk first(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
     const Arrival end = first.to(first.farthest());
     if (end.kind == Arrival::Kind::failed) fail(k, from, path.nu, end.message);
     if (end.kind == Arrival::Kind::reached)
@@ -171,7 +171,7 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
                        to_string(segment.extent_kind), segment.extent, kMostStrain));
     prediction.unjammed = first.unjammed();
     prediction.rows.push_back(row_of(from, static_cast<int>(k), path.nu, N));
-    Walk second(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
+    ControlledWalk second(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
     for (int i = 1; i < per_segment; ++i) {
       if (control.stop.stop_requested()) throw Interrupted("the prediction was interrupted");
       const Arrival arrival = second.to(end.t * i / per_segment);

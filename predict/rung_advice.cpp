@@ -8,8 +8,8 @@
 namespace grainlaw::predict {
 namespace {
 
-constexpr double kNoticed = 0.02;  // change of pressure that a law should not miss
-constexpr double kSmall = 1e-9;    // strain per unit of the path parameter that is none
+constexpr double kNoticed = 0.02;   // change of pressure that a law should not miss
+constexpr double kNoStrain = 1e-9;  // strain per unit of the path parameter that is none
 
 }  // namespace
 
@@ -19,7 +19,7 @@ RungAdvice rung_needed(const LawParameters<double>& parameters, const std::vecto
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const StraightSegment& segment = segments[k];
     const LawDirection direction = law_direction(segment.direction);
-    const bool volume = std::abs(direction.dx) > kSmall;
+    const bool volume = std::abs(direction.dx) > kNoStrain;
     if (direction.de > 0 && direction.N.dot(N) < 0)
       return {Rung::memory, fmt::format("segments[{}] turns the shear back", k)};
     if (volume && (direction.de > 0 || !N.isZero()) && advice.rung == Rung::reduced)

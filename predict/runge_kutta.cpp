@@ -11,19 +11,11 @@
 #include "model/error.hpp"
 #include "predict/ode_callbacks.hpp"
 #include "predict/state_vector.hpp"
+#include "predict/sundials_context.hpp"
 #include "predict/sundials_handle.hpp"
 
 namespace grainlaw::predict {
 namespace {
-
-void free_context(SUNContext context) { SUNContext_Free(&context); }
-void free_memory(void* memory) { ERKStepFree(&memory); }
-
-SUNContext new_context() {
-  SUNContext context = nullptr;
-  SUNContext_Create(nullptr, &context);
-  return created(context, "the context of ARKODE");
-}
 
 ARKODE_ERKTableID table_of(int order) {
   switch (order) {
@@ -47,9 +39,10 @@ ARKODE_ERKTableID table_of(int order) {
 }  // namespace
 
 struct RungeKutta::Impl : OdeCallbacks {
-  Owned<SUNContext, free_context> context{new_context()};
+  OwnedContext context = new_context();
   Owned<N_Vector, N_VDestroy> y;
-  Owned<void*, free_memory> memory;
+  static void release(void* memory) { ERKStepFree(&memory); }
+  Owned<void*, release> memory;
   long rhs_evaluations = 0, steps = 0;
 
   OdeCallbacks* user() { return this; }
