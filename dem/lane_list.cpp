@@ -117,43 +117,40 @@ Runs runs_around(std::uint32_t b, std::uint32_t bins, std::uint32_t reach) {
   return runs;
 }
 
-/// Sorts places by the indices of their spheres. They are few, so by insertion.
-void sort_by_sphere(const Spatial& s, std::uint32_t* places, std::size_t count, std::vector<std::uint64_t>& keys) {
-  keys.resize(count);
-  for (std::size_t k = 0; k < count; ++k) keys[k] = std::uint64_t{s.sphere[places[k]]} << 32 | places[k];
-  if (count > 64) {
-    std::sort(keys.begin(), keys.end());
-  } else {
-    for (std::size_t k = 1; k < count; ++k) {
-      const std::uint64_t key = keys[k];
-      std::size_t to = k;
-      for (; to > 0 && keys[to - 1] > key; --to) keys[to] = keys[to - 1];
-      keys[to] = key;
+/// Puts the places that a search found into the order of the indices of their spheres.
+class Sorter {
+ public:
+  std::uint32_t* room_for(std::size_t count) {
+    if (place_.size() < count + kLanes) {
+      place_.resize(count + kLanes);
+      key_.resize(count + kLanes);
+    }
+    return place_.data();
+  }
+
+  /// The first `count` that were written to the room.
+  void write_ordered(const Spatial& s, std::size_t count, std::uint32_t* ordered) {
+    constexpr std::size_t few = 128;
+    if (count > few) {
+      std::sort(place_.begin(), place_.begin() + static_cast<std::ptrdiff_t>(count),
+                [&](std::uint32_t p, std::uint32_t q) { return s.sphere[p] < s.sphere[q]; });
+      std::copy_n(place_.begin(), count, ordered);
+    } else {
+      for (std::size_t k = 0; k < count; ++k) key_[k] = static_cast<std::int32_t>(s.sphere[place_[k]]);
+      order_by_key(key_.data(), place_.data(), count, ordered);
     }
   }
-  for (std::size_t k = 0; k < count; ++k) places[k] = static_cast<std::uint32_t>(keys[k]);
-}
+
+ private:
+  std::vector<std::uint32_t> place_;
+  std::vector<std::int32_t> key_;
+};
 
 /// Neighbours of the spheres of a block, one after the other.
 struct Found {
   std::vector<std::uint32_t> neighbour;
   std::vector<std::uint32_t> count, near_count;
 };
-
-/// How many of them are nearer than the sum of the radii and near_skin.
-std::uint32_t count_near(const Spatial& s, std::size_t p, const std::uint32_t* neighbour, std::size_t count, float narrower) {
-  std::uint32_t near = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t q = neighbour[k];
-    const auto between = [](std::int32_t a, std::int32_t b) {
-      return static_cast<float>(static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b)));
-    };
-    const float dx = between(s.x[p], s.x[q]) * s.edge[0], dy = between(s.y[p], s.y[q]) * s.edge[1], dz = between(s.z[p], s.z[q]) * s.edge[2];
-    const float reach = s.reach[p] + s.reach[q] - narrower;
-    near += dx * dx + dy * dy + dz * dz < reach * reach ? 1 : 0;
-  }
-  return near;
-}
 
 /// Spheres in the bins around that of sphere p.
 struct Surroundings {
@@ -184,22 +181,21 @@ Surroundings surroundings(const Spatial& s, std::size_t p) {
 Found search(const Spatial& s, float narrower, std::size_t begin, std::size_t end) {
   Found found;
   found.count.reserve(end - begin);
-  found.neighbour.resize(32 * (end - begin) + kLanes);
+  found.neighbour.resize(32 * (end - begin));
   const SearchField field{s.x.data(), s.y.data(), s.z.data(), s.reach.data(), s.edge};
-  std::vector<std::uint64_t> keys;
+  Sorter sorter;
   Surroundings around;
   std::size_t total = 0, bin = s.start.size();
   for (std::size_t p = begin; p < end; ++p) {
     const std::size_t own_bin = s.at(s.bin_along(0, s.x[p]), s.bin_along(1, s.y[p]), s.bin_along(2, s.z[p]));
     if (own_bin != bin) around = surroundings(s, p);
     bin = own_bin;
-    if (found.neighbour.size() < total + around.spheres + kLanes) found.neighbour.resize(2 * (total + around.spheres) + kLanes);
-    std::uint32_t* const own = found.neighbour.data() + total;
-    const std::size_t count = find_near(field, p, {around.range.data(), around.count}, own);
-    sort_by_sphere(s, own, count, keys);
-    found.count.push_back(static_cast<std::uint32_t>(count));
-    found.near_count.push_back(count_near(s, p, own, count, narrower));
-    total += count;
+    const FoundNear count = find_near(field, p, {around.range.data(), around.count}, narrower, sorter.room_for(around.spheres));
+    if (found.neighbour.size() < total + count.listed) found.neighbour.resize(2 * (total + count.listed));
+    sorter.write_ordered(s, count.listed, found.neighbour.data() + total);
+    found.count.push_back(static_cast<std::uint32_t>(count.listed));
+    found.near_count.push_back(static_cast<std::uint32_t>(count.near));
+    total += count.listed;
   }
   return found;
 }

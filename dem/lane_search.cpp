@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 // The code between foreach_target.h and HWY_ONCE is compiled once for each kind of vector instructions.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)  // nothing of theirs is used
@@ -62,14 +63,15 @@ void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, double 
   }
 }
 
-std::size_t find_near_on(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found) {
+FoundNear find_near_on(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, float narrower,
+                       std::uint32_t* found) {
   const Tag<float> d;
   const hn::RebindToSigned<Tag<float>> di;
   const auto x = hn::Set(di, field.x[i]), y = hn::Set(di, field.y[i]), z = hn::Set(di, field.z[i]);
-  const auto reach = hn::Set(d, field.reach[i]);
+  const auto reach = hn::Set(d, field.reach[i]), less = hn::Set(d, narrower);
   const auto ex = hn::Set(d, field.edge[0]), ey = hn::Set(d, field.edge[1]), ez = hn::Set(d, field.edge[2]);
   const auto self = hn::Set(di, static_cast<std::int32_t>(i)), lane = hn::Iota(di, 0);
-  std::size_t count = 0;
+  FoundNear count;
   for (const SearchRange& range : ranges) {
     const auto end = hn::Set(di, static_cast<std::int32_t>(range.end));
     for (std::size_t p = range.begin; p < range.end; p += hn::Lanes(d)) {
@@ -78,16 +80,28 @@ std::size_t find_near_on(const SearchField& field, std::size_t i, std::span<cons
                  dz = hn::Mul(hn::ConvertTo(d, hn::Sub(z, hn::LoadU(di, field.z + p))), ez);
       // not fused: one list everywhere
       const auto d2 = hn::Add(hn::Mul(dz, dz), hn::Add(hn::Mul(dy, dy), hn::Mul(dx, dx)));
-      const auto both = hn::Add(reach, hn::LoadU(d, field.reach + p));
+      const auto both = hn::Add(reach, hn::LoadU(d, field.reach + p)), narrow = hn::Sub(both, less);
       const auto index = hn::Add(lane, hn::Set(di, static_cast<std::int32_t>(p)));
-      auto near = hn::RebindMask(di, hn::Lt(d2, hn::Mul(both, both)));
-      near = hn::And(near, hn::And(hn::Ne(index, self), hn::Lt(index, end)));
-      if (hn::AllFalse(di, near)) continue;
-      hn::StoreU(hn::Compress(index, near), di, reinterpret_cast<std::int32_t*>(found + count));
-      count += hn::CountTrue(di, near);
+      auto listed = hn::RebindMask(di, hn::Lt(d2, hn::Mul(both, both)));
+      listed = hn::And(listed, hn::And(hn::Ne(index, self), hn::Lt(index, end)));
+      if (hn::AllFalse(di, listed)) continue;
+      hn::StoreU(hn::Compress(index, listed), di, reinterpret_cast<std::int32_t*>(found + count.listed));
+      count.listed += hn::CountTrue(di, listed);
+      count.near += hn::CountTrue(di, hn::And(listed, hn::RebindMask(di, hn::Lt(d2, hn::Mul(narrow, narrow)))));
     }
   }
   return count;
+}
+
+void order_by_key_on(std::int32_t* key, const std::uint32_t* value, std::size_t count, std::uint32_t* ordered) {
+  const hn::RebindToSigned<Tag<float>> di;
+  hn::StoreU(hn::Set(di, std::numeric_limits<std::int32_t>::max()), di, key + count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto own = hn::Set(di, key[k]);
+    std::size_t smaller = 0;
+    for (std::size_t o = 0; o < count; o += hn::Lanes(di)) smaller += hn::CountTrue(di, hn::Lt(hn::LoadU(di, key + o), own));
+    ordered[smaller] = value[k];
+  }
 }
 
 void pick_near_mixed(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
@@ -108,6 +122,7 @@ namespace grainlaw::dem {
 HWY_EXPORT(pick_near_mixed);
 HWY_EXPORT(pick_near_full);
 HWY_EXPORT(find_near_on);
+HWY_EXPORT(order_by_key_on);
 
 void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
   HWY_DYNAMIC_DISPATCH(pick_near_mixed)(lanes, edge, near_skin, begin, end);
@@ -115,8 +130,12 @@ void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double ne
 void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
   HWY_DYNAMIC_DISPATCH(pick_near_full)(lanes, edge, near_skin, begin, end);
 }
-std::size_t find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found) {
-  return HWY_DYNAMIC_DISPATCH(find_near_on)(field, i, ranges, found);
+FoundNear find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, float narrower,
+                    std::uint32_t* found) {
+  return HWY_DYNAMIC_DISPATCH(find_near_on)(field, i, ranges, narrower, found);
+}
+void order_by_key(std::int32_t* key, const std::uint32_t* value, std::size_t count, std::uint32_t* ordered) {
+  HWY_DYNAMIC_DISPATCH(order_by_key_on)(key, value, count, ordered);
 }
 
 }  // namespace grainlaw::dem

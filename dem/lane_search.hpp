@@ -28,8 +28,18 @@ struct SearchRange {
   std::uint32_t begin = 0, end = 0;
 };
 
+struct FoundNear {
+  std::size_t listed = 0;  ///< nearer than the sum of the reaches
+  std::size_t near = 0;    ///< of them those nearer by `narrower`
+};
+
 /// Writes to `found` (room for 16 more than all) the spheres of the ranges that are nearer to sphere i than the sum of
-/// their reaches, i itself left out; returns how many.
-std::size_t find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, std::uint32_t* found);
+/// their reaches, i itself left out.
+FoundNear find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, float narrower,
+                    std::uint32_t* found);
+
+/// Values in the order of their keys, which are distinct: the place of each is the number of smaller keys. For few, since the
+/// cost grows as their square. `key` has room for 16 more, which are overwritten.
+void order_by_key(std::int32_t* key, const std::uint32_t* value, std::size_t count, std::uint32_t* ordered);
 
 }  // namespace grainlaw::dem

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <set>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "dem/lane_pass.hpp"
 #include "dem/lane_search.hpp"
@@ -106,6 +109,27 @@ TYPED_TEST(LaneList, D19NearOnesAreAllThatAreNear) {
   EXPECT_TRUE(std::includes(near.begin(), near.end(), within.begin(), within.end())) << "missed";
   EXPECT_TRUE(std::includes(around.begin(), around.end(), near.begin(), near.end())) << "invented";
   EXPECT_LT(near.size(), all.size());
+}
+
+// Whatever the number, also none, and on all vectors.
+TEST(LaneSearch, OrdersByKeyWithEveryTarget) {
+  scene::Draw draw(23);
+  for (const std::string& target : vector_targets()) {
+    use_vector_target(target);
+    for (std::size_t count = 0; count <= 50; ++count) {
+      std::vector<std::int32_t> key(count + kLanes);
+      std::vector<std::uint32_t> value(count), ordered(count + 1, 7);
+      for (std::size_t k = 0; k < count; ++k) {
+        key[k] = static_cast<std::int32_t>(100 * k + static_cast<std::size_t>(draw.uniform(0, 99)));
+        std::swap(key[k], key[static_cast<std::size_t>(draw.uniform(0, static_cast<double>(k + 1)))]);
+      }
+      for (std::size_t k = 0; k < count; ++k) value[k] = static_cast<std::uint32_t>(key[k] / 100);  // 0, 1 ... in the wanted order
+      order_by_key(key.data(), value.data(), count, ordered.data());
+      for (std::size_t k = 0; k < count; ++k) EXPECT_EQ(ordered[k], k) << target << ", of " << count;
+      EXPECT_EQ(ordered[count], 7U) << "written beyond the end";
+    }
+  }
+  use_vector_target("");
 }
 
 // What lanes have stored is theirs again, bit for bit.
