@@ -120,9 +120,8 @@ std::string window_text(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories, each segment from its measured start: P* of ISO unloading (nu >= {:g}, start on Eq. (14)) "
       "relative, scale {:g}; s_par scale {:g} and F_par scale {:g} in shear, at constant volume 0 < eps_dev <= {:g} "
-      "and, "
-      "with {:g} times the weight, eps_dev >= {:g}, elsewhere all rows; P* in shear is shown without weight because "
-      "Eq. (16) has no dilatancy",
+      "and, with {:g} times the weight, eps_dev >= {:g}, elsewhere all rows; P* in shear is shown without weight "
+      "because Eq. (16) has no dilatancy",
       options.iso_nu_min, options.pressure_scale, options.stress_scale, options.fabric_scale, options.rate_window,
       options.steady_weight, options.steady_from);
 }

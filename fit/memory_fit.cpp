@@ -86,10 +86,7 @@ std::string memory_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative "
       "to the mean, scale {:g}, s_par of eps_dev <= {:g} and with the same weight of the rest, scale {:g}, F_par of "
-      "eps_dev <= "
-      "{:g}, scale {:g}; "
-      "where the volume "
-      "changes s_par and F_par of all rows",
+      "eps_dev <= {:g}, scale {:g}; where the volume changes s_par and F_par of all rows",
       options.pressure_scale, options.stiffness_window, options.stress_scale, options.lag_window, options.fabric_scale);
 }
 

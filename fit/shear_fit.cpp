@@ -200,8 +200,7 @@ std::vector<ShearFit> fit_shear_tests(const DataSet& data, double nu_c, const Ca
   stage.name = "shear";
   stage.window = fmt::format(
       "each test of shear at constant volume for itself: 0 < eps_dev <= {:g} and eps_dev >= {:g}, the second window "
-      "with "
-      "{:g} times the weight of the first; start measured in the first row",
+      "with {:g} times the weight of the first; start measured in the first row",
       options.rate_window, options.steady_from, options.steady_weight);
   stage.converged = true;
   stage.termination = "one fit per test and quantity";

@@ -146,8 +146,7 @@ std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, cons
   first(EventKind::unjammed, "the state unjams; P, stress and fabric are zero until nu rises above that again");
   first(EventKind::tension,
         "a principal stress vanishes and the state unjams: grains without cohesion carry no tension; P, stress and "
-        "fabric "
-        "are zero until nu rises above that again");
+        "fabric are zero until nu rises above that again");
   return warnings;
 }
 

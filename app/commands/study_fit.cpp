@@ -22,8 +22,7 @@ constexpr const char* kOfLaws =
     "difference from the fit of everything";
 constexpr const char* kOfPrediction =
     "root mean square over P_star, s_par, F_par of their differences from the prediction by the fit of everything, "
-    "root "
-    "mean square along the path over the largest value";
+    "root mean square along the path over the largest value";
 
 struct FitSetting {
   std::string name;

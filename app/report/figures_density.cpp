@@ -96,10 +96,9 @@ Figure density_figure(const ReportInput& input) {
   figure.id = "density";
   figure.title = "Pressure, coordination and rattlers against volume fraction";
   figure.description =
-      "Three panels over volume fraction: dimensionless pressure and corrected coordination number rise, the fraction "
-      "of "
-      "rattlers falls. Symbols are DEM data, solid lines the fitted equations 14, 11 and 12, dashed lines the "
-      "published ones.";
+      "Three panels over volume fraction: dimensionless pressure and corrected coordination number rise, the "
+      "fraction of rattlers falls. Symbols are DEM data, solid lines the fitted equations 14, 11 and 12, dashed "
+      "lines the published ones.";
   figure.caption = notation(
       "{P}* with Eq. 14, {C}* with Eq. 11, {φ}_{r} with Eq. 12. Every run shows about 60 of its rows. "
       "Dashed: Table 2 of the paper.");
@@ -143,9 +142,8 @@ Figure scaled_density_figure(const ReportInput& input) {
   figure.title = "Scaled pressure, overlap and fabric trace on isotropic unloading";
   figure.description =
       "Three panels over volume fraction, all rising: pressure divided by density and coordination, mean overlap of "
-      "contacts, "
-      "trace of the fabric tensor. Symbols are DEM data, solid lines the fitted equations, dashed lines the published "
-      "ones.";
+      "contacts, trace of the fabric tensor. Symbols are DEM data, solid lines the fitted equations, dashed lines "
+      "the published ones.";
   figure.caption = notation(
       "Scaled pressure {P}* {ν}_{c}/({ν}{C}) with Eq. 15, mean overlap with Eq. 13 ({D} ln({ν}/{ν}_{c})), "
       "{F}_{v} with {g}_{3}{ν}{C}.");

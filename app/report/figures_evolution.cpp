@@ -24,14 +24,12 @@ Figure residual_figure(const ReportInput& input) {
   figure.id = "residuals";
   figure.title = "Misfit of the coupled fit, test by test";
   figure.description =
-      "Two rows of three panels over the starting density of each calibration test: root mean square and mean of model "
-      "minus "
-      "DEM, divided by the largest DEM value, for pressure, stress ratio and fabric.";
+      "Two rows of three panels over the starting density of each calibration test: root mean square and mean of "
+      "model minus DEM, divided by the largest DEM value, for pressure, stress ratio and fabric.";
   figure.caption = notation(
-      "Model (Eq. 16) minus DEM over max|DEM| of the test. In D2 the bias of {P}* grows towards jamming: Eq. 16 has no "
-      "dilatancy, so pressure hardly changes at constant volume while that of the packing rises. This is the known gap "
-      "of the "
-      "law, shown and not fitted away.");
+      "Model (Eq. 16) minus DEM over max|DEM| of the test. In D2 the bias of {P}* grows towards jamming: Eq. 16 has "
+      "no dilatancy, so pressure hardly changes at constant volume while that of the packing rises. This is the "
+      "known gap of the law, shown and not fitted away.");
   figure.sources = {"calibration.json"};
   figure.columns = 3;
   figure.panel_height = 170;

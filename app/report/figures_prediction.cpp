@@ -177,8 +177,7 @@ Figure prediction_figure(const PredictionFolder& prediction, std::size_t index) 
                              prediction.path.nu, to_string(prediction.path.branch));
   figure.description =
       "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs on "
-      "packings "
-      "that the calibration never saw, lines the predictions of the law. Below them the differences.";
+      "packings that the calibration never saw, lines the predictions of the law. Below them the differences.";
   const Text note =
       plain(fmt::format(" The path needs {}: {}. Bands, about that rung's curve from the law's start: {}.",
                         to_string(prediction.needed.rung), prediction.needed.why, prediction.bands));

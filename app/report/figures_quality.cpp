@@ -77,12 +77,10 @@ Figure preparation_quality_figure(const ReportInput& input) {
                                  "volume fraction {ν} [–]", lowest, highest);
   figure.description =
       "Three panels over volume fraction with logarithmic ordinates: ratio of kinetic to potential energy, magnitude "
-      "of the "
-      "energy residual, inertial number. The first and the last fall with density.";
+      "of the energy residual, inertial number. The first and the last fall with density.";
   figure.caption = notation(
       "DEM as lines. The energy residual is the box work minus what was stored and dissipated, over |work| + initial "
-      "kinetic "
-      "energy + dissipation. A run warns beyond 10^{−3} and stops beyond 10^{−2}. Lines that leave a panel "
+      "kinetic energy + dissipation. A run warns beyond 10^{−3} and stops beyond 10^{−2}. Lines that leave a panel "
       "at its lower edge go on to smaller values.");
   for (std::size_t m = 0; m < kMeasures.size(); ++m) {
     for (const TestRecord& test : input.tests) {

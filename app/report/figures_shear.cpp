@@ -97,9 +97,9 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
   figure.id = what.id;
   figure.title = what.title;
   figure.description = fmt::format(
-      "One panel per density. Over deviatoric strain the quantity rises from about zero and saturates; the plateau is "
-      "lower "
-      "at higher density. Symbols are DEM runs, solid lines the fits of Eq. {}, dashed lines the published law.",
+      "One panel per density. Over deviatoric strain the quantity rises from about zero and saturates; the plateau "
+      "is lower at higher density. Symbols are DEM runs, solid lines the fits of Eq. {}, dashed lines the published "
+      "law.",
       what.equation);
   figure.caption = notation(fmt::format(
       "Signed along the direction of shear. Solid: Eq. {} fitted to each run; dotted: the same equation with the "

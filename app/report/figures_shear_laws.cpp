@@ -78,9 +78,8 @@ Figure shear_law_figure(const ReportInput& input) {
   figure.title = "Steady values and rates of shear against volume fraction";
   figure.description =
       "Four panels over volume fraction, all falling: steady stress ratio, its rate, steady deviatoric fabric, its "
-      "rate. "
-      "Symbols are fits of single DEM runs, solid lines equation 20 after the coupled fit, dotted lines equation 20 "
-      "before it, dashed lines the published law.";
+      "rate. Symbols are fits of single DEM runs, solid lines equation 20 after the coupled fit, dotted lines "
+      "equation 20 before it, dashed lines the published law.";
   figure.caption = notation(
       "Eq. 20 with {ν}_{c} fixed. Circles: Eqs. 17 and 18 fitted run by run; crosses: mean of the "
       "steady rows. Dotted: staged fit of Eq. 20. Solid: after the coupled fit of Eq. 16, of D2 and, where D3 was "

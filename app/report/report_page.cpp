@@ -26,17 +26,15 @@ std::vector<std::string> lead(const ReportInput& input) {
                          [&](const TestRecord& test) { return test.role == role; });
   };
   std::string text = fmt::format(
-      "Frictionless spheres in a periodic cell were compressed and sheared ({} calibration tests, {}); an incremental "
-      "constitutive law was fitted to what they did; its predictions are set beside runs that the fit never saw. The "
-      "form of "
-      "the law and the published numbers are those of Imole, Kumar, Magnanimo and Luding, KONA 30 (2013).",
+      "Frictionless spheres in a periodic cell were compressed and sheared ({} calibration tests, {}); an "
+      "incremental constitutive law was fitted to what they did; its predictions are set beside runs that the fit "
+      "never saw. The form of the law and the published numbers are those of Imole, Kumar, Magnanimo and Luding, "
+      "KONA 30 (2013).",
       count(Role::calibration), seed_count(input.tests));
   std::string reading = fmt::format(
-      "In every figure symbols (or thin lines, where said) are DEM data, solid and dotted lines the law, dashed lines "
-      "the "
-      "published law. Stress is positive in compression, strain in tension; a star means multiplied by 2⟨r⟩/k. "
-      "Calibrated "
-      "range: ν = {:.4g} to {:.4g}, deviatoric strain up to {:.3g}.",
+      "In every figure symbols (or thin lines, where said) are DEM data, solid and dotted lines the law, dashed "
+      "lines the published law. Stress is positive in compression, strain in tension; a star means multiplied by "
+      "2⟨r⟩/k. Calibrated range: ν = {:.4g} to {:.4g}, deviatoric strain up to {:.3g}.",
       calibration.nu_min, calibration.nu_max, calibration.eps_dev_max);
   std::vector<std::string> blocks{paragraph_html(plain(text)), paragraph_html(plain(reading))};
   if (!calibration.converged) {
@@ -73,9 +71,9 @@ std::string dilatancy_gap(const ReportInput& input) {
   }
   if (worst == nullptr) return "No constant-volume test entered the coupled fit.";
   return fmt::format(
-      "The known gap of Eq. 16: at constant volume the pressure of the packing changes, most of all near jamming, and "
-      "the law "
-      "has no dilatancy to follow it. The largest bias of P* is {}\u00a0% of the largest DEM value, in {}.",
+      "The known gap of Eq. 16: at constant volume the pressure of the packing changes, most of all near jamming, "
+      "and the law has no dilatancy to follow it. The largest bias of P* is {}\u00a0% of the largest DEM value, in "
+      "{}.",
       fixed(100 * worst->bias / worst->max_abs_data, 1), worst->test);
 }
 

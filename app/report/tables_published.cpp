@@ -31,8 +31,7 @@ Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters) {
   Table table;
   table.caption = fmt::format(
       "{} against the published: {} agree, {} differ, {} have no error. Distance: difference over the standard error "
-      "of a "
-      "difference between our mean and one other packing",
+      "of a difference between our mean and one other packing",
       of_parameters ? "Parameters of Tables 2 and 3" : "Curves over density", count(verdicts, of_parameters, "agrees"),
       count(verdicts, of_parameters, "differs"), count(verdicts, of_parameters, "no error"));
   table.source = "calibration.json";
@@ -79,8 +78,7 @@ Table jamming_table(const std::vector<Verdict>& verdicts) {
   Table table;
   table.caption =
       "Jamming densities by mode, from the coordination number (Eq. 11) and from the pressure (Eq. 14): the paper "
-      "finds "
-      "ISO > UNI > D2 = D3";
+      "finds ISO > UNI > D2 = D3";
   table.source = "calibration.json";
   table.columns = {words(plain("mode")), quantity(notation("{ν}_{c} of {C}*")), quantity(plain("published")),
                    quantity(notation("{ν}_{c} of {P}*")), quantity(plain("published"))};
