@@ -6,6 +6,13 @@
 
 #include "predict/sundials_handle.hpp"
 
+// Of the loop after it: no element that it writes is read by another turn.
+#if defined(__clang__)
+#define GRAINLAW_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define GRAINLAW_INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
 namespace grainlaw::predict {
 namespace {
 
@@ -19,7 +26,7 @@ void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
   const double *X = data(x), *Y = data(y);
   double* Z = data(z);
   const sunindextype n = length(z);
-#pragma GCC ivdep
+  GRAINLAW_INDEPENDENT
   for (sunindextype i = 0; i < n; ++i) Z[i] = a * X[i] + b * Y[i];
 }
 
@@ -27,7 +34,7 @@ void scale(double c, N_Vector x, N_Vector z) {
   const double* X = data(x);
   double* Z = data(z);
   const sunindextype n = length(z);
-#pragma GCC ivdep
+  GRAINLAW_INDEPENDENT
   for (sunindextype i = 0; i < n; ++i) Z[i] = c * X[i];
 }
 
@@ -42,7 +49,7 @@ double weighted_rms(N_Vector x, N_Vector w) {
 /// z = sum of c_k x_k for exactly `terms` of them, read through once; z may be one of them.
 template <int terms>
 void combine(const double* c, const double* const* X, double* Z, sunindextype n) {
-#pragma GCC ivdep
+  GRAINLAW_INDEPENDENT
   for (sunindextype i = 0; i < n; ++i) {
     double sum = c[0] * X[0][i];
     for (int k = 1; k < terms; ++k) sum += c[k] * X[k][i];
