@@ -9,8 +9,7 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kLinearStep =
-    1e-6;  // of a parameter; the quotient's own error is about as small, errors need two digits
+constexpr double kLinearStep = 1e-6;  // of a parameter; the quotient's own error is about as small, and two digits do
 
 bool has_error(const Eigen::MatrixXd& influence, Eigen::Index k) { return influence.row(k).squaredNorm() > 0; }
 

@@ -10,7 +10,7 @@ namespace grainlaw::fit {
 namespace {
 
 constexpr double kHuber = 1.345;
-constexpr double kNormalMedian = 1.4826;  // standard deviation over upper_median magnitude of normal noise
+constexpr double kNormalMedian = 1.4826;  // standard deviation over median magnitude of normal noise
 constexpr double kSettledFactor = 1e-3;   // largest change of a factor at the end
 constexpr double kExactMisfit = 1e-9;     // of the data: below, misfits are rounding and no row stands out
 constexpr int kRounds = 30;
