@@ -1,32 +1,38 @@
 #!/usr/bin/env bash
 # tests/acceptance/ground.sh [--quick]: what makes the ground firm, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
-# --quick: hard cases but the long ones, restart points, hashes over threads, the referee. Otherwise also the long hard
-# cases, kills and injected faults, full disks, a sample of 60 mutants (MUTANTS=N: N), coverage, and the paper-size example
+# --quick: hard cases but the long ones, restart points, hashes over threads, the referee, refusals. Otherwise also the long
+# hard cases, kills and injected faults, full disks, a sample of 60 mutants (MUTANTS=N: N), coverage, and the paper-size example
 # (reused from build/acceptance/ when finished).
 set -euo pipefail
 
 # shellcheck source=tests/acceptance/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
 
-# Runs one of tests/survival; its log is kept.
-survival() { # script VARIABLE=value...
-  env GRAINLAW_SOURCE_DIR="$PWD" "${@:2}" tests/in_fresh_directory.sh "$PWD/tests/survival/$1.sh" "$PWD/$bin/grainlaw" \
-    2>"$out/$1.log" >"$out/$1.txt" || tail -3 "$out/$1.log" >&2
+# Runs one of tests/survival or tests/cli; its log is kept.
+shell_test() { # folder/script VARIABLE=value...
+  local name=${1#*/}
+  env GRAINLAW_SOURCE_DIR="$PWD" "${@:2}" tests/in_fresh_directory.sh "$PWD/tests/$1.sh" "$PWD/$bin/grainlaw" \
+    2>"$out/$name.log" >"$out/$name.txt" || tail -3 "$out/$name.log" >&2
+}
+
+refusals() {
+  shell_test cli/refusals
+  figure refusals.slowest_seconds "$(value_of refusals.slowest_seconds "$out/refusals.txt")" "<=0.1"
 }
 
 mishaps() {
-  survival kills KILLS=200
+  shell_test survival/kills KILLS=200
   figure kills.survived "$(value_of kills.survived "$out/kills.txt")" ">=200"
-  survival faults FAULTS=500
+  shell_test survival/faults FAULTS=500
   local injected sound
   injected=$(value_of faults.injected "$out/faults.txt")
   sound=$(value_of faults.sound "$out/faults.txt")
   figure faults.injected "$injected" ">=500"
   figure faults.corrupt "$(awk -v i="$injected" -v s="$sound" 'BEGIN { print i == "missing" ? i : i - s }')" "<=0"
-  survival full_disk
+  shell_test survival/full_disk
   figure disks.full "$(value_of disks.full "$out/full_disk.txt")" ">=3"
-  survival signals SIGNALS=24 PAPER_SIZE=yes
+  shell_test survival/signals SIGNALS=24 PAPER_SIZE=yes
   figure signals.interrupted "$(value_of signals.interrupted "$out/signals.txt")" ">=12"
   figure signals.slowest_exit_seconds "$(value_of signals.slowest_exit_seconds "$out/signals.txt")" "<=2"
 }
@@ -67,6 +73,7 @@ paper_size() {
 hard_cases DORF
 figure restart_points.bitwise "$(value_of R5.restart_points "$out/hard_cases.figures")" ">=100"
 referee
+refusals
 if [[ $quick == no ]]; then
   mishaps
   paper_size

@@ -1,10 +1,9 @@
-# Hard cases S1, S2, S6: refused within 0.1 s with exit code 2 and one line naming file and key; no folder is left behind.
+# Hard cases S1, S2, S6: refused with exit code 2 and one line naming file and key; no folder is left behind. How long the
+# slowest refusal takes is only printed: tests/acceptance/ground.sh compares it with the 0.1 s of S2.
 set -euo pipefail
 grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
 slowest=0
-allowed=100 # ms
-[[ -z ${GRAINLAW_INSTRUMENTED:-} ]] || allowed=2000 # an instrumented program needs half a second to start
 
 # refuse FILE EXPECTED COMMAND...
 refuse() {
@@ -17,10 +16,7 @@ refuse() {
   [[ $(wc -l <stderr) == 1 ]] || fail "not one line: $(head -c 600 stderr)"
   grep -Fq -- "$expected" stderr || fail "expected '$expected', got: $(cat stderr)"
   [[ ! -e out ]] || fail "left a folder behind: $*"
-  local milliseconds
-  milliseconds=$(awk '{print int(1000 * ($1 + $2))}' times)
-  (( milliseconds <= allowed )) || fail "took $milliseconds ms: $*"
-  (( milliseconds <= slowest )) || slowest=$milliseconds
+  slowest=$(awk -v s="$slowest" '{ t = $1 + $2; print (t > s ? t : s) }' times)
 }
 spec() { printf '%s' "$1" >spec.json; refuse "$2" "$grainlaw" calibrate spec.json; }
 
@@ -67,4 +63,4 @@ echo '{"initial": {"nu": 0.7}, "segments": []}' >path.json
 echo '{}' >parameters.json
 refuse "parameters.json: misses the key 'format'" "$grainlaw" predict parameters.json path.json
 refuse 'none.json: cannot be opened' "$grainlaw" predict none.json path.json
-echo "slowest refusal: $slowest ms of processor time"
+echo "refusals.slowest_seconds $slowest"
