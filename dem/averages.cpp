@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/energy_account.hpp"
+
 namespace grainlaw::dem {
 namespace {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dem/averages.hpp"
+#include "dem/energy_account.hpp"
 #include "dem/path_row.hpp"
 #include "dem/quasi_static_test.hpp"
 #include "dem/run_watch.hpp"

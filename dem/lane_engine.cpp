@@ -1,6 +1,7 @@
 #include "dem/lane_engine.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "dem/lane_list.hpp"
@@ -37,9 +38,56 @@ LaneStep step_of(const Simulation& sim, const Lanes<Real>& lanes) {
   step.stiffness = material.stiffness / (unit.mass / unit.time / unit.time);
   step.viscosity = material.contact_viscosity / (unit.mass / unit.time);
   step.drag = material.background_viscosity / (unit.mass / unit.time);
-  step.edge = edges(sim.state.packing.H, unit);
   step.portable_bits = sim.options.portable_bits;
   return step;
+}
+
+/// How far a sphere may move against the cell between the time of `since` [m], when pairs up to `skin` apart were found, and now, so
+/// that all up to `other_skin` apart are still among them. In internal units.
+template <class Real>
+double allowed(const Simulation& sim, const Lanes<Real>& lanes, const Eigen::Matrix3d& since, double skin, double other_skin) {
+  const double stretch = std::min(1.0, (sim.state.packing.H.diagonal().array() / since.diagonal().array()).minCoeff());
+  const double touch = 2 * sim.list.r_max + other_skin;
+  return (stretch * (2 * sim.list.r_max + skin) - touch) / 2 * (1 - kRounding) / lanes.unit.length;
+}
+
+/// For the first half of a step.
+template <class Real>
+LaneStep drift_step(const Simulation& sim, const Lanes<Real>& lanes, const CellMotion& half) {
+  LaneStep step = step_of(sim, lanes);
+  step.edge = edges(sim.state.packing.H, lanes.unit);
+  const std::array<double, 3> edge = edges(half.H, lanes.unit);
+  for (std::size_t a = 0; a < 3; ++a) step.drift[a] = 2 * step.half_dt / edge[a] * kQuantaPerEdge<Real>;
+  step.allowed = allowed(sim, lanes, sim.state.ref_H, sim.list.skin, near_skin(sim));
+  step.near_allowed = allowed(sim, lanes, sim.near_H, near_skin(sim), 0);
+  const double growth = (sim.state.packing.H.diagonal().array() / sim.near_H.diagonal().array()).maxCoeff();
+  step.list_in_danger = !(sim.near_moved / lanes.unit.length * growth + step.near_allowed < step.allowed * (1 - kRounding));
+  return step;
+}
+
+/// For the second.
+template <class Real>
+LaneStep kick_step(const Simulation& sim, const Lanes<Real>& lanes, const CellMotion& end) {
+  LaneStep step = step_of(sim, lanes);
+  step.edge = edges(end.H, lanes.unit);
+  for (int a = 0; a < 3; ++a) step.rate[static_cast<std::size_t>(a)] = end.L(a, a) * lanes.unit.time;
+  return step;
+}
+
+LaneSums sum_of(const std::vector<LaneSums>& parts) {
+  LaneSums sum;
+  for (const LaneSums& part : parts) {
+    sum.box_power += part.box_power;
+    sum.contact_power += part.contact_power;
+    sum.v2 += part.v2;
+  }
+  return sum;
+}
+
+PassSums in_SI(const LaneSums& sum, const Simulation& sim, const Units& unit) {
+  const double speed = unit.length / unit.time, power = unit.mass * speed * speed / unit.time;
+  return {sum.box_power * power, sum.contact_power * power, sim.state.sums.E_pot,
+          sim.state.material.background_viscosity * sum.v2 * speed * speed};
 }
 
 /// Calls work(block, begin, end) for the groups of each block of spheres.
@@ -76,26 +124,33 @@ void enter_lanes(Simulation& sim) {
     sim.lanes = make_lanes<double>(sim.state, sim.dt, sim.list.skin, near_skin(sim), *sim.team);
   }
   with_lanes(sim, [&](auto& lanes) { refresh_rows(sim, lanes); });
+  list_still_holds(sim);
   repick_near(sim);
 }
 
 Drifted drift_lanes(Simulation& sim, const CellMotion& half) {
-  return with_lanes(sim, [&]<class Real>(Lanes<Real>& lanes) {
-    LaneStep step = step_of(sim, lanes);
-    const std::array<double, 3> edge = edges(half.H, lanes.unit);
-    for (std::size_t a = 0; a < 3; ++a) step.drift[a] = 2 * step.half_dt / edge[a] * kQuantaPerEdge<Real>;
-    const auto allowed = [&](const Eigen::Matrix3d& since, double skin, double other_skin) {
-      const double stretch = std::min(1.0, (sim.state.packing.H.diagonal().array() / since.diagonal().array()).minCoeff());
-      const double touch = 2 * sim.list.r_max + other_skin;
-      return (stretch * (2 * sim.list.r_max + skin) - touch) / 2 * (1 - kRounding) / lanes.unit.length;
-    };
-    step.allowed = allowed(sim.state.ref_H, sim.list.skin, near_skin(sim));
-    step.near_allowed = allowed(sim.near_H, near_skin(sim), 0);
+  return with_lanes(sim, [&](auto& lanes) {
+    const LaneStep step = drift_step(sim, lanes, half);
     std::vector<Drifted> how(block_count(lanes.spheres));
     for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t begin, std::size_t end) {
       how[block] = kick_and_drift(lanes, step, begin, end);
     });
     return *std::max_element(how.begin(), how.end());
+  });
+}
+
+bool list_still_holds(Simulation& sim) {
+  return with_lanes(sim, [&]<class Real>(const Lanes<Real>& lanes) {
+    LaneStep step = step_of(sim, lanes);
+    step.edge = edges(sim.state.packing.H, lanes.unit);
+    const double most = allowed(sim, lanes, sim.state.ref_H, sim.list.skin, near_skin(sim));
+    std::vector<double> moved2(block_count(lanes.spheres));
+    for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      moved2[block] = farthest_moved2(lanes, step, begin, end);
+    });
+    const double farthest2 = *std::max_element(moved2.begin(), moved2.end());
+    sim.near_moved = std::sqrt(farthest2) * lanes.unit.length;
+    return most > 0 && farthest2 < static_cast<double>(static_cast<Real>(most * most));
   });
 }
 
@@ -115,32 +170,35 @@ void rearrange_lanes(Simulation& sim) {
     arrange(lanes, edges(sim.state.packing.H, lanes.unit), sim.list.skin / length, near_skin(sim) / length, *sim.team);
     refresh_rows(sim, lanes);
   });
+  sim.near_moved = 0;
   repick_near(sim);
 }
 
 PassSums kick_lanes(Simulation& sim, const CellMotion& end) {
-  return with_lanes(sim, [&]<class Real>(Lanes<Real>& lanes) {
-    const Units& unit = lanes.unit;
-    LaneStep step = step_of(sim, lanes);
-    for (int a = 0; a < 3; ++a) step.rate[static_cast<std::size_t>(a)] = end.L(a, a) * unit.time;
+  return with_lanes(sim, [&](auto& lanes) {
+    const LaneStep step = kick_step(sim, lanes, end);
     std::vector<LaneSums> parts(block_count(lanes.spheres));
     for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t first, std::size_t last) {
       parts[block] = force_and_kick(lanes, step, first, last);
     });
-    LaneSums sum;
-    for (const LaneSums& part : parts) {
-      sum.box_power += part.box_power;
-      sum.contact_power += part.contact_power;
-      sum.v2 += part.v2;
-    }
-    const double speed = unit.length / unit.time, power = unit.mass * speed * speed / unit.time;
-    return PassSums{sum.box_power * power, sum.contact_power * power, sim.state.sums.E_pot,
-                    sim.state.material.background_viscosity * sum.v2 * speed * speed};
+    return in_SI(sum_of(parts), sim, lanes.unit);
   });
 }
 
-void synchronise(Simulation& sim) {
-  if (std::holds_alternative<std::monostate>(sim.lanes)) return;
+KickAndDrift kick_and_drift_lanes(Simulation& sim, const CellMotion& end, const CellMotion& half) {
+  return with_lanes(sim, [&](auto& lanes) {
+    const LaneStep step = kick_step(sim, lanes, end), next = drift_step(sim, lanes, half);
+    std::vector<LaneSums> parts(block_count(lanes.spheres));
+    std::vector<Drifted> how(parts.size());
+    for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t first, std::size_t last) {
+      parts[block] = force_kick_drift(lanes, step, next, first, last, how[block]);
+    });
+    std::swap(lanes.row, lanes.next_row);
+    return KickAndDrift{in_SI(sum_of(parts), sim, lanes.unit), *std::max_element(how.begin(), how.end())};
+  });
+}
+
+void read_lanes(Simulation& sim) {
   with_lanes(sim, [&](const auto& lanes) {
     store_lanes(lanes, sim.state);
     sim.state.sums.E_pot = 0.25 * sim.state.material.stiffness * sum_squared_overlaps(lanes, sim.state.packing.H);

@@ -18,11 +18,25 @@ void enter_lanes(Simulation& sim);
 /// First half of a step: kick, drift.
 Drifted drift_lanes(Simulation& sim, const CellMotion& half);
 
-/// New near ones or a new list at the present positions, in the middle of a step.
+/// Whether all pairs that near ones are picked from are in the list. Notes in sim.near_moved how far spheres have moved.
+bool list_still_holds(Simulation& sim);
+
+/// New near ones, after that question, or a new list at the present positions, in the middle of a step.
 void repick_near(Simulation& sim);
 void rearrange_lanes(Simulation& sim);
 
 /// Second half: forces and kick. Returns the totals of the state at its end, E_pot as it was.
 PassSums kick_lanes(Simulation& sim, const CellMotion& end);
+
+/// Second half of the step that ended with `end` and the first of the next in one pass over the spheres: the same bits in
+/// less time. The cell of the state must be that at the end of the next step.
+struct KickAndDrift {
+  PassSums sums;
+  Drifted how;
+};
+KickAndDrift kick_and_drift_lanes(Simulation& sim, const CellMotion& end, const CellMotion& half);
+
+/// Arrays and E_pot of the state from the lanes.
+void read_lanes(Simulation& sim);
 
 }  // namespace grainlaw::dem

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "dem/lane_search.hpp"
+#include "dem/large_pages.hpp"
 #include "model/error.hpp"
 
 namespace grainlaw::dem {
@@ -76,7 +77,7 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
   for (auto* v : {&s.x, &s.y, &s.z}) v->assign(n + kLanes, 0);
   s.sphere.resize(n);
   s.reach.assign(n + kLanes, 0.0F);
-  const auto sphere_at = [&](std::uint32_t lane) { return lanes.group[lane / kLanes].sphere[lane % kLanes]; };
+  const auto sphere_at = [&](std::uint32_t lane) { return lanes.listed[lane / kLanes].sphere[lane % kLanes]; };
   team.for_each_block(s.bins[2], [&](std::size_t layer) {
     for (std::size_t b = s.at(0, 0, layer); b < s.at(0, 0, layer + 1); ++b) {
       const auto first = s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b]), last = s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b + 1]);
@@ -85,7 +86,7 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
     for (std::size_t p = s.start[s.at(0, 0, layer)]; p < s.start[s.at(0, 0, layer + 1)]; ++p) {
       const SphereGroup<Real>& group = lanes.group[s.from[p] / kLanes];
       const std::size_t l = s.from[p] % kLanes;
-      s.sphere[p] = group.sphere[l];
+      s.sphere[p] = lanes.listed[s.from[p] / kLanes].sphere[l];
       s.x[p] = leading(group.x[l]);
       s.y[p] = leading(group.y[l]);
       s.z[p] = leading(group.z[l]);
@@ -200,15 +201,12 @@ Found search(const Spatial& s, float narrower, std::size_t begin, std::size_t en
   return found;
 }
 
-/// Sphere `from` of the old groups into lane `to` of the new ones.
+/// Sphere in lane i of the old group into lane j of the new one.
 template <class Real>
-void move_sphere(const std::vector<SphereGroup<Real>>& old, std::size_t from, std::vector<SphereGroup<Real>>& group, std::size_t to) {
-  const SphereGroup<Real>& a = old[from / kLanes];
-  SphereGroup<Real>& b = group[to / kLanes];
-  const std::size_t i = from % kLanes, j = to % kLanes;
-  b.x[j] = b.ref_x[j] = a.x[i];
-  b.y[j] = b.ref_y[j] = a.y[i];
-  b.z[j] = b.ref_z[j] = a.z[i];
+void move_sphere(const SphereGroup<Real>& a, std::size_t i, SphereGroup<Real>& b, std::size_t j) {
+  b.x[j] = a.x[i];
+  b.y[j] = a.y[i];
+  b.z[j] = a.z[i];
   b.vx[j] = a.vx[i];
   b.vy[j] = a.vy[i];
   b.vz[j] = a.vz[i];
@@ -217,7 +215,6 @@ void move_sphere(const std::vector<SphereGroup<Real>>& old, std::size_t from, st
   b.az[j] = a.az[i];
   b.radius[j] = a.radius[i];
   b.inverse_mass[j] = a.inverse_mass[i];
-  b.sphere[j] = a.sphere[i];
 }
 
 }  // namespace
@@ -257,11 +254,15 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
 
   SphereGroup<Real> nobodies{};
   std::fill(std::begin(nobodies.radius), std::end(nobodies.radius), Real{kNobodysRadius});
-  std::vector<SphereGroup<Real>> group(groups, nobodies);
+  std::vector<SphereGroup<Real>> group;
+  reserve_on_large_pages(group, groups);
+  group.assign(groups, nobodies);
+  std::vector<ListedGroup<Real>> listed(groups);
   lanes.first_rung.assign(groups + 1, 0);
   for (std::size_t g = 0; g < groups; ++g) lanes.first_rung[g + 1] = lanes.first_rung[g] + rungs[g];
   constexpr auto row_size = static_cast<std::uint32_t>(sizeof(SphereRow<Real>));
   const auto nobody = static_cast<std::uint32_t>(groups * kLanes);
+  reserve_on_large_pages(lanes.rung, lanes.first_rung[groups]);
   lanes.rung.resize(lanes.first_rung[groups]);
   team.for_each_block(block_count(n), [&](std::size_t block) {
     for (std::size_t g = block * kBlockSize / kLanes; g < std::min(groups, (block + 1) * kBlockSize / kLanes); ++g) {
@@ -270,17 +271,28 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
         const std::uint32_t own = t < n ? count[order[t]] : 0;
         for (std::size_t k = 0; k < own; ++k) lanes.rung[lanes.first_rung[g] + k].row[l] = row_size * rank[first[order[t]][k]];
         for (std::size_t k = lanes.first_rung[g] + own; k < lanes.first_rung[g + 1]; ++k) lanes.rung[k].row[l] = row_size * nobody;
-        if (t < n) move_sphere(lanes.group, s.from[order[t]], group, t);
+        if (t >= n) continue;
+        const std::size_t p = order[t], from = s.from[p];
+        move_sphere(lanes.group[from / kLanes], from % kLanes, group[g], l);
+        listed[g].x[l] = group[g].x[l];
+        listed[g].y[l] = group[g].y[l];
+        listed[g].z[l] = group[g].z[l];
+        listed[g].sphere[l] = s.sphere[p];
       }
     }
   });
+  reserve_on_large_pages(lanes.near_rung, lanes.rung.size());
   lanes.near_rung.resize(lanes.rung.size());
   lanes.near_first.assign(groups, 0);
   lanes.near_count.assign(groups, 0);
   lanes.frontier = (kReach[2] * n / s.bins[2] + 4 * kBlockSize) / kLanes;
   lanes.group = std::move(group);
-  lanes.row.assign(nobody + 1, SphereRow<Real>{});
-  lanes.row[nobody].radius = Real{kNobodysRadius};
+  lanes.listed = std::move(listed);
+  for (auto* row : {&lanes.row, &lanes.next_row}) {
+    reserve_on_large_pages(*row, nobody + 1);
+    row->assign(nobody + 1, {});
+    row->back().radius = Real{kNobodysRadius};
+  }
 }
 
 template <class Real>
@@ -295,7 +307,7 @@ NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p, Listed whic
   }
   const auto image = [](double difference) { return static_cast<int>(std::lround(difference)) + far; };
   std::vector<std::size_t> lane(p.size());
-  for (std::size_t t = 0; t < lanes.spheres; ++t) lane[lanes.group[t / kLanes].sphere[t % kLanes]] = t;
+  for (std::size_t t = 0; t < lanes.spheres; ++t) lane[lanes.listed[t / kLanes].sphere[t % kLanes]] = t;
   list.first.push_back(0);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t g = lane[i] / kLanes, l = lane[i] % kLanes;
@@ -305,7 +317,7 @@ NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p, Listed whic
     for (std::size_t k = first; k < last; ++k) {
       const std::size_t t = rung[k].row[l] / sizeof(SphereRow<Real>);
       if (t >= lanes.spheres) break;
-      const std::uint32_t j = lanes.group[t / kLanes].sphere[t % kLanes];
+      const std::uint32_t j = lanes.listed[t / kLanes].sphere[t % kLanes];
       list.j.push_back(j);
       list.image.push_back(static_cast<std::uint32_t>(
           (image(p.sx[i] - p.sx[j]) * across + image(p.sy[i] - p.sy[j])) * across + image(p.sz[i] - p.sz[j])));

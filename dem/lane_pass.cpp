@@ -46,77 +46,132 @@ double sum_of(const double* lane) {
 
 // --- Passes ------------------------------------------------------------------------------------------------------
 
-/// Rows of the vector of spheres at `o` of group g, velocities predicted by h.
-template <bool portable, class Real, class V>
-HWY_INLINE void write_row_vector(Lanes<Real>& lanes, std::size_t g, std::size_t o, V h) {
-  const Tag<Real> d;
-  const MultiplyAdd<portable> multiply_add;
-  const SphereGroup<Real>& own = lanes.group[g];
-  const auto place = [&](const FixedPoint<Real>* x) { return hn::BitCast(d, hn::Load(hn::RebindToSigned<Tag<Real>>(), x + o)); };
-  const auto predicted = [&](const Real* v, const Real* a) { return multiply_add(h, hn::Load(d, a + o), hn::Load(d, v + o)); };
-  Real* rows = reinterpret_cast<Real*>(lanes.row.data() + g * kLanes + o);
-  store_rows(d, Quartet<Tag<Real>>{place(own.x), place(own.y), place(own.z), hn::Load(d, own.radius + o)}, rows, 0);
-  store_rows(d, Quartet<Tag<Real>>{predicted(own.vx, own.ax), predicted(own.vy, own.ay), predicted(own.vz, own.az), hn::Zero(d)},
-             rows, 4);
-}
-
 template <bool portable, class Real>
 void write_rows_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
+  const hn::RebindToSigned<Tag<Real>> di;
+  const MultiplyAdd<portable> multiply_add;
   const auto h = hn::Set(d, static_cast<Real>(step.half_dt));
   for (std::size_t g = begin; g < end; ++g) {
-    for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) write_row_vector<portable>(lanes, g, o, h);
+    const SphereGroup<Real>& own = lanes.group[g];
+    for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
+      const auto place = [&](const FixedPoint<Real>* x) { return hn::BitCast(d, hn::Load(di, x + o)); };
+      const auto predicted = [&](const Real* v, const Real* a) { return multiply_add(h, hn::Load(d, a + o), hn::Load(d, v + o)); };
+      auto* to = reinterpret_cast<Real*>(lanes.row.data() + g * kLanes + o);
+      store_rows(d, {place(own.x), place(own.y), place(own.z), hn::Load(d, own.radius + o)}, to, 0);
+      store_rows(d, {predicted(own.vx, own.ax), predicted(own.vy, own.ay), predicted(own.vz, own.az), hn::Zero(d)}, to, 4);
+    }
   }
 }
+
+/// Squared distance from where spheres were, against the cell.
+template <class Real, bool portable>
+struct Moved2 {
+  using D = Tag<Real>;
+  using VI = hn::Vec<hn::RebindToSigned<D>>;
+  Edge<D, portable> ex, ey, ez;
+  explicit Moved2(const LaneStep& step) : ex(D(), step.edge[0]), ey(D(), step.edge[1]), ez(D(), step.edge[2]) {}
+  HWY_INLINE hn::Vec<D> operator()(VI x, VI y, VI z, const FixedPoint<Real>* x_0, const FixedPoint<Real>* y_0,
+                                   const FixedPoint<Real>* z_0) const {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const MultiplyAdd<portable> multiply_add;
+    const auto ux = ex(d, hn::Sub(x, hn::Load(di, x_0))), uy = ey(d, hn::Sub(y, hn::Load(di, y_0))), uz = ez(d, hn::Sub(z, hn::Load(di, z_0)));
+    return multiply_add(ux, ux, multiply_add(uy, uy, hn::Mul(uz, uz)));
+  }
+};
+
+template <bool portable, class Real>
+double farthest_moved2_on(const Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
+  const Tag<Real> d;
+  const hn::RebindToSigned<Tag<Real>> di;
+  const Moved2<Real, portable> moved2(step);
+  auto farthest2 = hn::Zero(d);
+  for (std::size_t g = begin; g < end; ++g) {
+    const SphereGroup<Real>& own = lanes.group[g];
+    const ListedGroup<Real>& listed = lanes.listed[g];
+    for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
+      farthest2 = hn::Max(farthest2, moved2(hn::Load(di, own.x + o), hn::Load(di, own.y + o), hn::Load(di, own.z + o), listed.x + o,
+                                            listed.y + o, listed.z + o));
+    }
+  }
+  return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, farthest2)));
+}
+
+/// The first half of a step, a vector of spheres after the other: half kick, drift, rows.
+template <bool portable, class Real>
+class Drift {
+  using D = Tag<Real>;
+  using V = hn::Vec<D>;
+  static constexpr D d{};
+  static constexpr hn::RebindToSigned<D> di{};
+
+ public:
+  explicit Drift(const LaneStep& step)
+      : h_(set(step.half_dt)), x_(set(step.drift[0])), y_(set(step.drift[1])), z_(set(step.drift[2])),
+        moved2_(step), allowed2_(square(step.allowed)), near_allowed2_(square(step.near_allowed)), list_in_danger_(step.list_in_danger) {}
+
+  /// Spheres from lane o of group g on, with their accelerations and velocities; their rows go to `row`.
+  HWY_INLINE void operator()(Lanes<Real>& lanes, std::vector<SphereRow<Real>>& row, std::size_t g, std::size_t o, V ax, V ay, V az, V vx,
+                             V vy, V vz) {
+    const MultiplyAdd<portable> multiply_add;
+    SphereGroup<Real>& own = lanes.group[g];
+    vx = multiply_add(h_, ax, vx);
+    vy = multiply_add(h_, ay, vy);
+    vz = multiply_add(h_, az, vz);
+    hn::Store(vx, d, own.vx + o);
+    hn::Store(vy, d, own.vy + o);
+    hn::Store(vz, d, own.vz + o);
+    const V dx = hn::Mul(vx, x_), dy = hn::Mul(vy, y_), dz = hn::Mul(vz, z_);
+    sane_ = hn::And(sane_, hn::Lt(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), limit_));
+    const auto x = hn::Add(hn::Load(di, own.x + o), to_fixed(d, dx)), y = hn::Add(hn::Load(di, own.y + o), to_fixed(d, dy)),
+               z = hn::Add(hn::Load(di, own.z + o), to_fixed(d, dz));
+    hn::Store(x, di, own.x + o);
+    hn::Store(y, di, own.y + o);
+    hn::Store(z, di, own.z + o);
+    const ListedGroup<Real>& listed = lanes.listed[g];
+    if (list_in_danger_) listed_ = hn::And(listed_, hn::Lt(moved2_(x, y, z, listed.x + o, listed.y + o, listed.z + o), allowed2_));
+    near_ = hn::And(near_, hn::Lt(moved2_(x, y, z, own.near_x + o, own.near_y + o, own.near_z + o), near_allowed2_));
+    auto* to = reinterpret_cast<Real*>(row.data() + g * kLanes + o);
+    store_rows(d, {hn::BitCast(d, x), hn::BitCast(d, y), hn::BitCast(d, z), hn::Load(d, own.radius + o)}, to, 0);
+    store_rows(d, {multiply_add(h_, ax, vx), multiply_add(h_, ay, vy), multiply_add(h_, az, vz), hn::Zero(d)}, to, 4);
+  }
+
+  Drifted how() const {
+    if (!hn::AllTrue(d, sane_)) return Drifted::lost;
+    if (!hn::AllTrue(d, listed_)) return Drifted::beyond_list;
+    return hn::AllTrue(d, near_) ? Drifted::well : Drifted::beyond_near;
+  }
+
+ private:
+  static V set(double x) { return hn::Set(d, static_cast<Real>(x)); }
+  static V square(double allowed) { return set(allowed > 0 ? allowed * allowed : -1); }
+
+  V h_, x_, y_, z_;
+  Moved2<Real, portable> moved2_;
+  V allowed2_, near_allowed2_;
+  bool list_in_danger_;
+  V limit_ = set(sizeof(Real) == 4 ? 0x1p29 : 0x1p49);
+  hn::Mask<D> sane_ = hn::Eq(limit_, limit_), listed_ = sane_, near_ = sane_;
+};
 
 template <bool portable, class Real>
 Drifted kick_and_drift_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
-  const MultiplyAdd<portable> multiply_add;
-  const hn::RebindToSigned<Tag<Real>> di;
-  using V = hn::Vec<Tag<Real>>;
-  using Int = FixedPoint<Real>;
-  const auto set = [&](double x) { return hn::Set(d, static_cast<Real>(x)); };
-  const V h = set(step.half_dt);
-  const V drift_x = set(step.drift[0]), drift_y = set(step.drift[1]), drift_z = set(step.drift[2]);
-  const Edge<Tag<Real>, portable> ex(d, step.edge[0]), ey(d, step.edge[1]), ez(d, step.edge[2]);
-  const V limit = set(sizeof(Real) == 4 ? 0x1p29 : 0x1p49);
-  const V allowed2 = set(step.allowed > 0 ? step.allowed * step.allowed : -1),
-          near_allowed2 = set(step.near_allowed > 0 ? step.near_allowed * step.near_allowed : -1);
-  auto sane = hn::Eq(limit, limit), listed = sane, near = sane;
+  Drift<portable, Real> drift(step);
   for (std::size_t g = begin; g < end; ++g) {
-    SphereGroup<Real>& own = lanes.group[g];
+    const SphereGroup<Real>& own = lanes.group[g];
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
-      const V ax = hn::Load(d, own.ax + o), ay = hn::Load(d, own.ay + o), az = hn::Load(d, own.az + o);
-      const V vx = multiply_add(h, ax, hn::Load(d, own.vx + o)), vy = multiply_add(h, ay, hn::Load(d, own.vy + o)),
-              vz = multiply_add(h, az, hn::Load(d, own.vz + o));
-      hn::Store(vx, d, own.vx + o);
-      hn::Store(vy, d, own.vy + o);
-      hn::Store(vz, d, own.vz + o);
-      const V dx = hn::Mul(vx, drift_x), dy = hn::Mul(vy, drift_y), dz = hn::Mul(vz, drift_z);
-      sane = hn::And(sane, hn::Lt(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), limit));
-      const auto x = hn::Add(hn::Load(di, own.x + o), to_fixed(d, dx)), y = hn::Add(hn::Load(di, own.y + o), to_fixed(d, dy)),
-                 z = hn::Add(hn::Load(di, own.z + o), to_fixed(d, dz));
-      hn::Store(x, di, own.x + o);
-      hn::Store(y, di, own.y + o);
-      hn::Store(z, di, own.z + o);
-      const auto moved2 = [&](const Int* from_x, const Int* from_y, const Int* from_z) {
-        const V ux = ex(d, hn::Sub(x, hn::Load(di, from_x + o))), uy = ey(d, hn::Sub(y, hn::Load(di, from_y + o))),
-                uz = ez(d, hn::Sub(z, hn::Load(di, from_z + o)));
-        return multiply_add(ux, ux, multiply_add(uy, uy, hn::Mul(uz, uz)));
-      };
-      listed = hn::And(listed, hn::Lt(moved2(own.ref_x, own.ref_y, own.ref_z), allowed2));
-      near = hn::And(near, hn::Lt(moved2(own.near_x, own.near_y, own.near_z), near_allowed2));
-      write_row_vector<portable>(lanes, g, o, h);
+      const auto at = [&](const Real* x) { return hn::Load(d, x + o); };
+      drift(lanes, lanes.row, g, o, at(own.ax), at(own.ay), at(own.az), at(own.vx), at(own.vy), at(own.vz));
     }
   }
-  if (!hn::AllTrue(d, sane)) return Drifted::lost;
-  if (!hn::AllTrue(d, listed)) return Drifted::beyond_list;
-  return hn::AllTrue(d, near) ? Drifted::well : Drifted::beyond_near;
+  return drift.how();
 }
 
-template <bool portable, class Real>
-LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
+/// Second half of a step; `after` gets each vector of spheres with its accelerations and velocities.
+template <bool portable, class Real, class After>
+LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end, const After& after) {
   const Tag<Real> d;
   const MultiplyAdd<portable> multiply_add;
   const hn::RebindToSigned<Tag<Real>> di;
@@ -173,12 +228,12 @@ LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t
       const V hm = hn::Mul(h, inverse_mass);
       const V nx = hn::Mul(multiply_add(hm, fx, vx), damped), ny = hn::Mul(multiply_add(hm, fy, vy), damped),
               nz = hn::Mul(multiply_add(hm, fz, vz), damped);
-      hn::Store(nx, d, own.vx + o);
-      hn::Store(ny, d, own.vy + o);
-      hn::Store(nz, d, own.vz + o);
-      hn::Store(hn::Mul(hn::Sub(fx, hn::Mul(gamma_b, nx)), inverse_mass), d, own.ax + o);
-      hn::Store(hn::Mul(hn::Sub(fy, hn::Mul(gamma_b, ny)), inverse_mass), d, own.ay + o);
-      hn::Store(hn::Mul(hn::Sub(fz, hn::Mul(gamma_b, nz)), inverse_mass), d, own.az + o);
+      const V ax = hn::Mul(hn::Sub(fx, hn::Mul(gamma_b, nx)), inverse_mass), ay = hn::Mul(hn::Sub(fy, hn::Mul(gamma_b, ny)), inverse_mass),
+              az = hn::Mul(hn::Sub(fz, hn::Mul(gamma_b, nz)), inverse_mass);
+      hn::Store(ax, d, own.ax + o);
+      hn::Store(ay, d, own.ay + o);
+      hn::Store(az, d, own.az + o);
+      after(g, o, ax, ay, az, nx, ny, nz);
       // every contact is met twice: halves of what belongs to it, all of -sum F_v . v
       lost = multiply_add(set(0.5), lost, multiply_add(gz, nz, multiply_add(gy, ny, hn::Mul(gx, nx))));
       add_to(totals.box + o, d, box);
@@ -189,6 +244,31 @@ LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t
   return {-0.5 * sum_of(totals.box), -sum_of(totals.contact), sum_of(totals.v2)};
 }
 
+template <bool portable, class Real>
+LaneSums end_step_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
+  const Tag<Real> d;
+  return force_and_kick_on<portable>(lanes, step, begin, end,
+                                     [&](std::size_t g, std::size_t o, auto, auto, auto, auto vx, auto vy, auto vz) {
+                                       SphereGroup<Real>& own = lanes.group[g];
+                                       hn::Store(vx, d, own.vx + o);
+                                       hn::Store(vy, d, own.vy + o);
+                                       hn::Store(vz, d, own.vz + o);
+                                     });
+}
+
+template <bool portable, class Real>
+LaneSums end_and_begin_on(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
+                          Drifted& how) {
+  Drift<portable, Real> drift(next);
+  const LaneSums sums = force_and_kick_on<portable>(
+      lanes, step, begin, end,
+      [&](std::size_t g, std::size_t o, auto ax, auto ay, auto az, auto vx, auto vy, auto vz) {
+        drift(lanes, lanes.next_row, g, o, ax, ay, az, vx, vy, vz);
+      });
+  how = drift.how();
+  return sums;
+}
+
 // What HWY_EXPORT needs: plain functions. One instance is enough where the machine can fuse.
 #define GRAINLAW_BY_BITS(function, ...) \
   (step.portable_bits && !kHasFused ? function<!kHasFused>(__VA_ARGS__) : function<false>(__VA_ARGS__))
@@ -196,11 +276,18 @@ LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t
   void write_rows_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {          \
     GRAINLAW_BY_BITS(write_rows_on, lanes, step, begin, end);                                                     \
   }                                                                                                               \
+  double farthest_moved2_##name(const Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) { \
+    return GRAINLAW_BY_BITS(farthest_moved2_on, lanes, step, begin, end);                                         \
+  }                                                                                                               \
   Drifted kick_and_drift_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {    \
     return GRAINLAW_BY_BITS(kick_and_drift_on, lanes, step, begin, end);                                          \
   }                                                                                                               \
   LaneSums force_and_kick_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {  \
-    return GRAINLAW_BY_BITS(force_and_kick_on, lanes, step, begin, end);                                          \
+    return GRAINLAW_BY_BITS(end_step_on, lanes, step, begin, end);                                                \
+  }                                                                                                               \
+  LaneSums force_kick_drift_##name(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, \
+                                   std::size_t end, Drifted& how) {                                               \
+    return GRAINLAW_BY_BITS(end_and_begin_on, lanes, step, next, begin, end, how);                                \
   }
 GRAINLAW_PASSES(float, mixed)
 GRAINLAW_PASSES(double, full)
@@ -219,16 +306,26 @@ namespace grainlaw::dem {
 
 HWY_EXPORT(write_rows_mixed);
 HWY_EXPORT(write_rows_full);
+HWY_EXPORT(farthest_moved2_mixed);
+HWY_EXPORT(farthest_moved2_full);
 HWY_EXPORT(kick_and_drift_mixed);
 HWY_EXPORT(kick_and_drift_full);
 HWY_EXPORT(force_and_kick_mixed);
 HWY_EXPORT(force_and_kick_full);
+HWY_EXPORT(force_kick_drift_mixed);
+HWY_EXPORT(force_kick_drift_full);
 
 void write_rows(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   HWY_DYNAMIC_DISPATCH(write_rows_mixed)(lanes, step, begin, end);
 }
 void write_rows(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   HWY_DYNAMIC_DISPATCH(write_rows_full)(lanes, step, begin, end);
+}
+double farthest_moved2(const Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
+  return HWY_DYNAMIC_DISPATCH(farthest_moved2_mixed)(lanes, step, begin, end);
+}
+double farthest_moved2(const Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
+  return HWY_DYNAMIC_DISPATCH(farthest_moved2_full)(lanes, step, begin, end);
 }
 Drifted kick_and_drift(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   return HWY_DYNAMIC_DISPATCH(kick_and_drift_mixed)(lanes, step, begin, end);
@@ -241,6 +338,14 @@ LaneSums force_and_kick(Lanes<float>& lanes, const LaneStep& step, std::size_t b
 }
 LaneSums force_and_kick(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   return HWY_DYNAMIC_DISPATCH(force_and_kick_full)(lanes, step, begin, end);
+}
+LaneSums force_kick_drift(Lanes<float>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
+                          Drifted& how) {
+  return HWY_DYNAMIC_DISPATCH(force_kick_drift_mixed)(lanes, step, next, begin, end, how);
+}
+LaneSums force_kick_drift(Lanes<double>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
+                          Drifted& how) {
+  return HWY_DYNAMIC_DISPATCH(force_kick_drift_full)(lanes, step, next, begin, end, how);
 }
 std::vector<std::string> vector_targets() {
   hwy::SetSupportedTargetsForTest(0);

@@ -18,6 +18,7 @@ struct LaneStep {
   std::array<double, 3> edge{};   ///< of the cell at the end of the step
   std::array<double, 3> rate{};   ///< L there, diagonal
   double allowed = 0;             ///< a sphere may move against the cell since the list was made
+  bool list_in_danger = true;     ///< false: it cannot have moved so far while the near ones last
   double near_allowed = 0;        ///< ... since the near ones were picked
   double stiffness = 0, viscosity = 0, drag = 0;  ///< k, gamma, gamma_b
   bool portable_bits = false;     ///< round as machines with a fused a b + c do, at a price where there is none
@@ -35,7 +36,7 @@ void write_rows(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, s
 
 enum class Drifted {
   well,
-  beyond_near,  ///< two spheres may touch that are not among the near ones
+  beyond_near,  ///< two spheres may touch that are not among the near ones; maybe beyond the list, where that was not in danger
   beyond_list,  ///< two spheres may touch that are not listed, or will be so when the near ones are picked the next time
   lost,         ///< a sphere moved farther in this step than an eighth of the cell, or is nowhere
 };
@@ -44,9 +45,20 @@ enum class Drifted {
 Drifted kick_and_drift(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 Drifted kick_and_drift(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 
+/// How far a sphere has moved against the cell since the list was made, squared, at most.
+double farthest_moved2(const Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+double farthest_moved2(const Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+
 /// Contact forces from the rows, then the second half kick with implicit drag.
 LaneSums force_and_kick(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 LaneSums force_and_kick(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+
+/// Second half of `step` and the first of `next` at once: what kick_and_drift() would say is left in `how`. The rows after the
+/// drift are written to lanes.next_row, as those of the spheres that come later are still read.
+LaneSums force_kick_drift(Lanes<float>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
+                          Drifted& how);
+LaneSums force_kick_drift(Lanes<double>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
+                          Drifted& how);
 
 /// Names of the vector instructions that this machine can use, best first; what the passes use is the first of them.
 std::vector<std::string> vector_targets();

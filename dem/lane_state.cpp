@@ -55,6 +55,7 @@ Lanes<Real> make_lanes(const State& state, double dt, double skin, double near_s
   lanes.unit = units_of(p, dt);
   const double length = lanes.unit.length, speed = length / lanes.unit.time, acceleration = speed / lanes.unit.time;
   lanes.group.resize((p.size() + kLanes - 1) / kLanes);
+  lanes.listed.resize(lanes.group.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     SphereGroup<Real>& g = lanes.group[i / kLanes];
     const std::size_t l = i % kLanes;
@@ -69,13 +70,13 @@ Lanes<Real> make_lanes(const State& state, double dt, double skin, double near_s
     g.az[l] = static_cast<Real>(state.az[i] / acceleration);
     g.radius[l] = static_cast<Real>(p.radius[i] / length);
     g.inverse_mass[l] = static_cast<Real>(lanes.unit.mass / p.mass[i]);
-    g.sphere[l] = static_cast<std::uint32_t>(i);
+    lanes.listed[i / kLanes].sphere[l] = static_cast<std::uint32_t>(i);
   }
   const Eigen::Matrix3d& H = state.ref_H;
   arrange(lanes, {H(0, 0) / length, H(1, 1) / length, H(2, 2) / length}, skin / length, near_skin / length, team);
   for (std::size_t t = 0; t < lanes.spheres; ++t) {
     SphereGroup<Real>& g = lanes.group[t / kLanes];
-    const std::size_t l = t % kLanes, i = g.sphere[l];
+    const std::size_t l = t % kLanes, i = lanes.listed[t / kLanes].sphere[l];
     g.x[l] = fixed<Real>(p.sx[i]);
     g.y[l] = fixed<Real>(p.sy[i]);
     g.z[l] = fixed<Real>(p.sz[i]);
@@ -89,13 +90,14 @@ void store_lanes(const Lanes<Real>& lanes, State& state) {
   const double length = lanes.unit.length, speed = length / lanes.unit.time, acceleration = speed / lanes.unit.time;
   for (std::size_t t = 0; t < lanes.spheres; ++t) {
     const SphereGroup<Real>& g = lanes.group[t / kLanes];
-    const std::size_t l = t % kLanes, i = g.sphere[l];
-    p.sx[i] = unwrapped(g.x[l], g.ref_x[l]);
-    p.sy[i] = unwrapped(g.y[l], g.ref_y[l]);
-    p.sz[i] = unwrapped(g.z[l], g.ref_z[l]);
-    state.ref_x[i] = fraction(g.ref_x[l]);
-    state.ref_y[i] = fraction(g.ref_y[l]);
-    state.ref_z[i] = fraction(g.ref_z[l]);
+    const ListedGroup<Real>& listed = lanes.listed[t / kLanes];
+    const std::size_t l = t % kLanes, i = listed.sphere[l];
+    p.sx[i] = unwrapped(g.x[l], listed.x[l]);
+    p.sy[i] = unwrapped(g.y[l], listed.y[l]);
+    p.sz[i] = unwrapped(g.z[l], listed.z[l]);
+    state.ref_x[i] = fraction(listed.x[l]);
+    state.ref_y[i] = fraction(listed.y[l]);
+    state.ref_z[i] = fraction(listed.z[l]);
     p.vx[i] = static_cast<double>(g.vx[l]) * speed;
     p.vy[i] = static_cast<double>(g.vy[l]) * speed;
     p.vz[i] = static_cast<double>(g.vz[l]) * speed;

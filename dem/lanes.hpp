@@ -46,11 +46,16 @@ template <class Real>
 struct alignas(64) SphereGroup {
   using Int = FixedPoint<Real>;
   Int x[kLanes], y[kLanes], z[kLanes];
-  Int ref_x[kLanes], ref_y[kLanes], ref_z[kLanes];     ///< when the list was made
   Int near_x[kLanes], near_y[kLanes], near_z[kLanes];  ///< when the near were picked from it
   Real vx[kLanes], vy[kLanes], vz[kLanes];
   Real ax[kLanes], ay[kLanes], az[kLanes];
   Real radius[kLanes], inverse_mass[kLanes];
+};
+
+/// The same sixteen when the list was made; most steps need not read them.
+template <class Real>
+struct alignas(64) ListedGroup {
+  FixedPoint<Real> x[kLanes], y[kLanes], z[kLanes];
   std::uint32_t sphere[kLanes];  ///< index in the State
 };
 
@@ -69,7 +74,9 @@ template <class Real>
 struct Lanes {
   std::size_t spheres = 0;
   std::vector<SphereGroup<Real>> group;
+  std::vector<ListedGroup<Real>> listed;
   std::vector<SphereRow<Real>> row;        ///< in the order of lanes; the last one is nobody's, for unused places
+  std::vector<SphereRow<Real>> next_row;   ///< those of the next step while they are written
   std::vector<std::size_t> first_rung;     ///< of each group, and the end
   std::vector<Rung> rung;                  ///< the list
   std::vector<Rung> near_rung;             ///< the near ones, of the groups that were picked together without gaps

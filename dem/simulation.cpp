@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "dem/energy_account.hpp"
 #include "dem/lane_engine.hpp"
 #include "dem/lane_list.hpp"
 #include "model/error.hpp"
@@ -87,7 +88,7 @@ void restore_list(Simulation& sim) {
 /// Runs the force pass block by block. When the forces of a block are known, after(begin, end) brings its velocities to
 /// the end of the step; then the powers are taken that need both.
 template <class After>
-void force_pass(Simulation& sim, const CellMotion& motion, const After& after) {
+PassSums force_pass(Simulation& sim, const CellMotion& motion, const After& after) {
   const Packing& p = sim.state.packing;
   const std::vector<Eigen::Vector3d> shift = image_shifts(sim.state.packing.H, sim.list);
   const ForceField field = force_field(sim, motion, shift);
@@ -112,7 +113,7 @@ void force_pass(Simulation& sim, const CellMotion& motion, const After& after) {
     sums.E_pot += part.E_pot;
     sums.drag_power += part.drag_power;
   }
-  sim.state.sums = sums;
+  return sums;
 }
 
 void first_forces(Simulation& sim, const CellMotion& motion) {
@@ -121,7 +122,7 @@ void first_forces(Simulation& sim, const CellMotion& motion) {
   for (std::size_t i = 0; i < p.size(); ++i) sim.motion[i] = {p.vx[i], p.vy[i], p.vz[i], 0};
   for (auto* a : {&state.ax, &state.ay, &state.az}) a->assign(p.size(), 0.0);
   const double gamma_b = state.material.background_viscosity;
-  force_pass(sim, motion, [&](std::size_t begin, std::size_t end) {
+  state.sums = force_pass(sim, motion, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       state.ax[i] = (sim.force[i][0] - gamma_b * p.vx[i]) / p.mass[i];
       state.ay[i] = (sim.force[i][1] - gamma_b * p.vy[i]) / p.mass[i];
@@ -320,31 +321,37 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
 
 void advance(Simulation& sim, const CellMotion& half, const CellMotion& end) {
   State& state = sim.state;
-  const double h = sim.dt / 2;
-  const PassSums before = state.sums;
-
-  const Eigen::Matrix3d start_H = state.packing.H;
   if (on_lanes(sim) && !moves_as_lanes_do(half)) leave_lanes(sim);
-  state.packing.H = end.H;
-  const Drifted how = on_lanes(sim) ? drift_lanes(sim, half) : drift(sim, start_H, half, end);
+  const Eigen::Matrix3d start_H = std::exchange(state.packing.H, end.H);
+  Drifted how;
+  if (sim.unkicked) {
+    const KickAndDrift done = kick_and_drift_lanes(sim, *std::exchange(sim.unkicked, {}), half);
+    account(sim, done.sums);
+    how = done.how;
+  } else {
+    how = on_lanes(sim) ? drift_lanes(sim, half) : drift(sim, start_H, half, end);
+  }
   if (how == Drifted::lost) {
     synchronise(sim);
     report_lost_sphere(state.packing, sim.dt);
   }
+  if (how == Drifted::beyond_near && !list_still_holds(sim)) how = Drifted::beyond_list;
   if (how == Drifted::beyond_near) repick_near(sim);
   if (how == Drifted::beyond_list) renew_list(sim, end);
 
   if (on_lanes(sim)) {
-    state.sums = kick_lanes(sim, end);
+    sim.unkicked = end;
   } else {
-    force_pass(sim, end, [&](std::size_t first, std::size_t last) { kick(sim, first, last); });
+    account(sim, force_pass(sim, end, [&](std::size_t first, std::size_t last) { kick(sim, first, last); }));
   }
-
   ++state.step;
   state.time += sim.dt;
-  state.ledger.W_box += h * (before.box_power + state.sums.box_power);
-  state.ledger.D_contact += h * (before.contact_power + state.sums.contact_power);
-  state.ledger.D_background += h * (before.drag_power + state.sums.drag_power);
+}
+
+void synchronise(Simulation& sim) {
+  if (!on_lanes(sim)) return;
+  if (sim.unkicked) account(sim, kick_lanes(sim, *std::exchange(sim.unkicked, {})));
+  read_lanes(sim);
 }
 
 std::unique_ptr<ContactView> view_contacts(const Simulation& sim, const CellMotion& motion) {
@@ -369,30 +376,6 @@ std::unique_ptr<ContactView> view_contacts(const Simulation& sim, const CellMoti
   view->field.place = view->place.data();
   view->field.motion = view->motion.data();
   return view;
-}
-
-void open_ledger(Simulation& sim) {
-  const double E_kin = kinetic_energy(sim.state.packing);
-  sim.state.ledger = {};
-  sim.state.ledger.E_start = E_kin + sim.state.sums.E_pot;
-  sim.state.ledger.E_kin_start = E_kin;
-}
-
-double kinetic_energy(const Packing& p) {
-  double twice = 0;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    twice += p.mass[i] * (p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i]);
-  }
-  return twice / 2;
-}
-
-double energy_residual(const Simulation& sim) {
-  const Ledger& ledger = sim.state.ledger;
-  const double lost = ledger.D_contact + ledger.D_background;
-  const double scale = std::abs(ledger.W_box) + ledger.E_kin_start + lost;
-  if (scale == 0) return 0;
-  const double change = kinetic_energy(sim.state.packing) + sim.state.sums.E_pot - ledger.E_start;
-  return (ledger.W_box - change - lost) / scale;
 }
 
 }  // namespace grainlaw::dem

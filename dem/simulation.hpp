@@ -6,6 +6,7 @@
 // order of its sorted neighbours, totals are summed in blocks of fixed size.
 
 #include <memory>
+#include <optional>
 #include <variant>
 
 #include "dem/force_pass.hpp"
@@ -48,15 +49,17 @@ struct CellMotion {
 
 /// A state in motion: the state plus what can be recomputed from it.
 struct Simulation {
-  State state;              ///< while on lanes, its arrays are as old as the last synchronise(); the rest is current
+  State state;              ///< while on lanes, arrays, sums and ledger are as old as the last synchronise(); the rest is current
   EngineOptions options;
-  double dt = 0;            ///< time step [s]
+  double dt = 0;            ///< time step [s], to be changed only after synchronise()
   NeighbourList list;
   std::uint64_t rebuilds = 0;      ///< of the list since the start of the simulation
   std::vector<Row> place, motion, force, viscous;  ///< of the force pass: positions with radii, velocities, contact
                                                    ///< forces and their viscous parts
   std::variant<std::monostate, Lanes<float>, Lanes<double>> lanes;  ///< what is simulated, when not the state itself
   Eigen::Matrix3d near_H = Eigen::Matrix3d::Zero();  ///< cell when the near ones were picked [m], on lanes
+  double near_moved = 0;  ///< how far a sphere had moved against the cell since the list was made, at most, then [m]
+  std::optional<CellMotion> unkicked;  ///< on lanes: end of a step whose forces wait to be taken with the next step's drift
   std::shared_ptr<ThreadTeam> team;
 };
 
@@ -73,7 +76,7 @@ Simulation start_simulation(State state, const EngineOptions& options, const Cel
 /// sphere when a position or velocity is no longer finite.
 void advance(Simulation& sim, const CellMotion& half, const CellMotion& end);
 
-/// Brings the arrays of sim.state and its E_pot up to date after advance().
+/// Brings sim.state up to date after advance().
 void synchronise(Simulation& sim);
 
 /// What sums over the contacts of a simulation read, for the velocities of its state.
@@ -86,13 +89,5 @@ struct ContactView {
 
 /// Needs sim.state synchronised; sim must outlive the view, which cannot be copied.
 std::unique_ptr<ContactView> view_contacts(const Simulation& sim, const CellMotion& motion);
-
-/// Opens the energy account anew at the current state: ledger zero, E_start taken.
-void open_ledger(Simulation& sim);
-
-double kinetic_energy(const Packing& packing);  ///< of fluctuation velocities [J]
-
-/// (W - dE - D)/(|W| + E_kin(0) + D) since the ledger was opened [-] (hard case D9); 0 when nothing happened.
-double energy_residual(const Simulation& sim);
 
 }  // namespace grainlaw::dem

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dem/energy_account.hpp"
 #include "dem/relax.hpp"
 #include "tests/support/dem_families.hpp"
 

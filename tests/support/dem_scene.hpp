@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dem/drive.hpp"
+#include "dem/energy_account.hpp"
 #include "dem/lane_list.hpp"
 #include "dem/simulation.hpp"
 #include "model/path.hpp"
@@ -114,7 +115,9 @@ inline EngineOptions engine_options() {
 }
 
 /// A pass line for what rounding alone leaves, given for double precision: float rounds 2^29 times as coarsely.
-inline double rounding(double in_double) { return precision_under_test() == Precision::mixed ? in_double * 0x1p29 : in_double; }
+inline double rounding(double in_double) {
+  return precision_under_test() == Precision::mixed ? in_double * 0x1p29 : in_double;
+}
 
 /// One step with the state's arrays brought up to date.
 inline void step(Simulation& sim, const CellMotion& half, const CellMotion& end) {
@@ -171,8 +174,10 @@ inline Eigen::Vector3d force_on(const Simulation& sim, std::size_t i) {
 
 /// The whole list of a simulation whose state is synchronised, not only the near ones of it.
 inline NeighbourList list_of(const Simulation& sim) {
-  if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) return plain_list(*mixed, sim.state.packing, Listed::all);
-  if (const auto* full = std::get_if<Lanes<double>>(&sim.lanes)) return plain_list(*full, sim.state.packing, Listed::all);
+  if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes))
+    return plain_list(*mixed, sim.state.packing, Listed::all);
+  if (const auto* full = std::get_if<Lanes<double>>(&sim.lanes))
+    return plain_list(*full, sim.state.packing, Listed::all);
   return sim.list;
 }
 

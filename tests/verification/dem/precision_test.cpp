@@ -84,17 +84,19 @@ TEST(PrecisionTable, ForcesAndPressure) {
     for (const std::uint64_t seed : {3U, 4U}) {
       const State state = scene::jammed({"Paper", 3}, 1000, nu, seed);
       const ForceErrors mixed = force_errors<float>(state), full = force_errors<double>(state);
-      worst_mixed = {std::max(worst_mixed.force, mixed.force), std::max(worst_mixed.max_force, mixed.max_force), std::max(worst_mixed.pressure, std::abs(mixed.pressure))};
-      worst_double = {0, std::max(worst_double.max_force, full.max_force), std::max(worst_double.pressure, std::abs(full.pressure))};
+      worst_mixed = {std::max(worst_mixed.force, mixed.force), std::max(worst_mixed.max_force, mixed.max_force),
+                     std::max(worst_mixed.pressure, std::abs(mixed.pressure))};
+      worst_double = {0, std::max(worst_double.max_force, full.max_force),
+                      std::max(worst_double.pressure, std::abs(full.pressure))};
     }
     const std::string at = fmt::format("nu{:.2f}", nu);
     expect_figure("precision.mixed.force." + at, worst_mixed.force, 1e-5);
     expect_figure("precision.mixed.P_star." + at, worst_mixed.pressure, 1e-6);
     expect_figure("precision.double.force." + at, worst_double.max_force, 1e-12);
     expect_figure("precision.double.P_star." + at, worst_double.pressure, 1e-12);
-    rows.push_back({fmt::format("{:.2f}", nu), fmt::format("{:.1e}", worst_mixed.force), fmt::format("{:.1e}", worst_mixed.max_force),
-                                     fmt::format("{:.1e}", worst_mixed.pressure), fmt::format("{:.1e}", worst_double.max_force),
-                                     fmt::format("{:.1e}", worst_double.pressure)});
+    rows.push_back({fmt::format("{:.2f}", nu), fmt::format("{:.1e}", worst_mixed.force),
+                    fmt::format("{:.1e}", worst_mixed.max_force), fmt::format("{:.1e}", worst_mixed.pressure),
+                    fmt::format("{:.1e}", worst_double.max_force), fmt::format("{:.1e}", worst_double.pressure)});
   }
   testing::print_table("precision", {"nu", "mixed: force, rms", "largest", "P*", "double: force, largest", "P*"}, rows);
 }
@@ -123,7 +125,8 @@ TEST(PrecisionTable, NearJamming) {
   ASSERT_LT(seen.mean_overlap, 3e-4);
   ASSERT_GT(seen.mean_overlap, 3e-5);
   // of a sphere, the sum over its contacts
-  expect_figure("precision.mixed.sphere_force.near_jamming_at_1e-4", force_errors<float>(state).force * seen.mean_overlap / 1e-4, 3e-3);
+  expect_figure("precision.mixed.sphere_force.near_jamming_at_1e-4",
+                force_errors<float>(state).force * seen.mean_overlap / 1e-4, 3e-3);
 }
 
 // Of one contact whose overlap is 1e-4 of the mean radius, anywhere in a cell of the paper's size.
@@ -150,13 +153,37 @@ State moving_packing() {
   return state;
 }
 
-std::vector<std::uint64_t> bits_after(const State& state, const EngineOptions& options, int steps) {
+std::vector<std::uint64_t> bits_after(const State& state, const EngineOptions& options, int steps, int look_every) {
   CellMotion motion = scene::at_rest(state);
   motion.L.diagonal() << 100, -100, 30;
   Simulation sim = start_simulation(state, options, motion);
-  for (int k = 0; k < steps; ++k) advance(sim, motion, motion);
+  for (int k = 1; k <= steps; ++k) {
+    advance(sim, motion, motion);
+    if (k % look_every == 0) synchronise(sim);
+  }
   synchronise(sim);
   return scene::bits_of(sim.state);
+}
+
+// A step that nobody looks at ends in the same pass over the spheres as the next one begins.
+TEST(Synchronise, LookingAtStepsChangesNoBit) {
+  int differing = 0, compared = 0;
+  for (const Precision precision : {Precision::mixed, Precision::full}) {
+    EngineOptions options;
+    options.precision = precision;
+    options.skin = 0.2;
+    for (const std::string& target : vector_targets()) {
+      use_vector_target(target);
+      const auto unseen = bits_after(moving_packing(), options, 200, 200);
+      for (const int look_every : {1, 7}) {
+        differing += bits_after(moving_packing(), options, 200, look_every) == unseen ? 0 : 1;
+        ++compared;
+      }
+    }
+    use_vector_target("");
+  }
+  EXPECT_GE(compared, 4);
+  expect_figure("steps.looks_that_change_bits", differing, 0);
 }
 
 // The same bits from vectors of any width; machines without fused multiply-add give them when asked to.
@@ -168,13 +195,13 @@ TEST(PortableBits, R2SameOnAllVectorInstructions) {
     options.precision = precision;
     options.portable_bits = true;
     use_vector_target("");
-    const auto expected = bits_after(moving_packing(), options, 200);
+    const auto expected = bits_after(moving_packing(), options, 200, 200);
     std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a by words: to be compared between compilers
     for (const std::uint64_t word : expected) hash = (hash ^ word) * 0x100000001b3;
     fmt::print("hash R2.{} {:016x}\n", precision == Precision::mixed ? "mixed" : "double", hash);
     for (const std::string& target : targets) {
       use_vector_target(target);
-      differing += bits_after(moving_packing(), options, 200) == expected ? 0 : 1;
+      differing += bits_after(moving_packing(), options, 200, 200) == expected ? 0 : 1;
       ++compared;
     }
     use_vector_target("");
@@ -215,7 +242,8 @@ TEST(PrecisionStatistics, TwentyThousandSteps) {
   Sum pressure, contacts, fabric;
   for (std::uint64_t seed = 1; seed <= kPackings; ++seed) {
     const State state = scene::jammed({"Paper", 3}, 300, 0.74, seed);
-    const auto path = resolve({volume_fraction(state.packing), Branch::unloading,
+    const auto path = resolve({volume_fraction(state.packing),
+                               Branch::unloading,
                                {{Mode::D2, direction_of(Mode::D2, "xyz", false), ExtentKind::eps_dev, 0.10}}});
     double P[2] = {}, C[2] = {}, F[2] = {};
     for (int k = 0; k < 2; ++k) {
@@ -235,8 +263,10 @@ TEST(PrecisionStatistics, TwentyThousandSteps) {
     contacts.add(C[0] / C[1] - 1);
     fabric.add(F[0] / F[1] - 1);
   }
-  for (const auto& [name, sum, width] : {std::tuple{"P_star", pressure, 0.05}, {"C_star", contacts, 0.02}, {"F_v", fabric, 0.02}}) {
-    expect_figure(fmt::format("precision.statistics.{}.over_interval", name), std::abs(sum.mean()) / sum.half_width(), 1);
+  for (const auto& [name, sum, width] :
+       {std::tuple{"P_star", pressure, 0.05}, {"C_star", contacts, 0.02}, {"F_v", fabric, 0.02}}) {
+    expect_figure(fmt::format("precision.statistics.{}.over_interval", name), std::abs(sum.mean()) / sum.half_width(),
+                  1);
     expect_figure(fmt::format("precision.statistics.{}.interval", name), sum.half_width(), width);
   }
 }

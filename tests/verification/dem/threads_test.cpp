@@ -79,8 +79,9 @@ TEST(Threads, R1DrivenRunWithRebuilds) {
     open_ledger(sim);
     Trace trace;
     for (int k = 0; k < 80; ++k) {
-      scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+      advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
       if (k % 2 == 0) continue;
+      synchronise(sim);
       trace.push_back(bits_of(sim.state));
       const Bits seen = bits_of(observe(sim, motion_at(drive, (k + 1) * sim.dt), Deviator<double>::Zero()));
       trace.back().insert(trace.back().end(), seen.begin(), seen.end());
