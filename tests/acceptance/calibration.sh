@@ -116,8 +116,8 @@ price_beside_lammps() {
   taskset -c 0 $bin/bench_engine "$out/../engine" >"$rates" 2>"$rates.err" || tail -3 "$rates.err" >&2
   for wanted in 0.05 0.02 0.01; do
     particle_steps=$(steps_at_paper_settings "$out/target-$wanted/plan.json")
-    price=$(awk -v steps="$particle_steps" -v a="$(value_of rate.lammps.N9261.threads1.nu0.66 "$rates")" \
-      -v b="$(value_of rate.lammps.N9261.threads1.nu0.82 "$rates")" \
+    price=$(awk -v steps="$particle_steps" -v a="$(value_of rate.lammps.N9261.nu0.66 "$rates")" \
+      -v b="$(value_of rate.lammps.N9261.nu0.82 "$rates")" \
       -v ours="$(jq '[.rounds[].seconds] | add' "$out/target-$wanted/plan.json")" -v cores="$(nproc)" \
       'BEGIN { print (a > 0 && b > 0 && ours > 0) ? steps / 2e6 * (1 / a + 1 / b) / (ours * cores) : "missing" }')
     figure "wanted.$wanted.lammps_seconds_over_ours.one_packing" "$price" ">=50"

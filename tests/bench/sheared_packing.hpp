@@ -1,0 +1,111 @@
+#pragma once
+// A packing in D2 shear, moving: what the engine's speed is measured on.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "dem/averages.hpp"
+#include "dem/preparation.hpp"
+#include "dem/state_file.hpp"
+
+namespace grainlaw::bench {
+
+inline constexpr double kRate = 138;  // [1/s]
+
+inline double wrapped(double s) { return s - std::floor(s); }
+
+/// At rest; prepared once and kept in `folder`.
+inline dem::State packing_at(const std::filesystem::path& folder, std::int64_t particles, double nu) {
+  const std::filesystem::path file = folder / fmt::format("N{}-{:.2f}.state", particles, nu);
+  if (!std::filesystem::exists(file)) {
+    std::filesystem::create_directories(folder);
+    dem::PreparationOptions options;
+    options.packing.particles = particles;
+    options.packing.seed = 1;
+    options.nu_max = 0.83;
+    options.keep_unloading = {nu};
+    options.nu_end = nu;
+    dem::PreparationSink sink;
+    sink.keep = [&](const dem::KeptState& kept) { dem::write_state(file, kept.state); };
+    sink.series = [](Branch, const std::vector<Observation>&) {};
+    RunControl control;
+    control.report = [](const Progress& p) { fmt::print(stderr, "\r{} {:3.0f} %   ", p.stage, 100 * p.fraction); };
+    dem::prepare(options, sink, control);
+    fmt::print(stderr, "\n");
+  }
+  return dem::read_state(file);
+}
+
+struct Sheared {
+  dem::Drive drive;
+  dem::Simulation sim;
+  int step = 0;
+};
+
+/// D2 at constant rate, up to eps_dev = 0.3.
+inline Sheared start_shear(const dem::State& state, const dem::EngineOptions& options) {
+  const Path path{dem::volume_fraction(state.packing),
+                  Branch::unloading,
+                  {{Mode::D2, direction_of(Mode::D2, "xyz", false), ExtentKind::eps_dev, 0.3}}};
+  dem::DriveOptions how;
+  how.profile = dem::Profile::constant;
+  how.strain_rate = kRate;
+  const dem::Drive drive = dem::make_drive(resolve(path)[0], how, state.packing.H);
+  return {drive, dem::start_simulation(state, options, dem::motion_at(drive, 0))};
+}
+
+inline dem::CellMotion motion_after(const Sheared& shear, double steps) {
+  return dem::motion_at(shear.drive, steps * shear.sim.dt);
+}
+
+/// Returns what it took. [s]
+inline double advance(Sheared& shear, int steps) {
+  const auto began = std::chrono::steady_clock::now();
+  for (const int end = shear.step + steps; shear.step < end; ++shear.step) {
+    dem::advance(shear.sim, motion_after(shear, shear.step + 0.5), motion_after(shear, shear.step + 1));
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+/// The state after so many steps of the path, moving.
+inline dem::State warmed_up(const dem::State& state, int steps) {
+  Sheared shear = start_shear(state, {});
+  advance(shear, steps);
+  dem::synchronise(shear.sim);
+  dem::State warm = std::move(shear.sim.state);
+  for (auto* a : {&warm.ax, &warm.ay, &warm.az, &warm.ref_x, &warm.ref_y, &warm.ref_z}) a->clear();
+  return warm;
+}
+
+/// The packing repeated `tiles` times along each axis: large without being prepared large.
+inline dem::State tiled(const dem::State& one, int tiles) {
+  dem::State all;
+  all.material = one.material;
+  const dem::Packing& p = one.packing;
+  const auto copies = static_cast<std::size_t>(tiles * tiles * tiles);
+  dem::resize(all.packing, p.size() * copies);
+  dem::Packing& q = all.packing;
+  q.H = p.H * tiles;
+  for (std::size_t k = 0, to = 0; k < copies; ++k) {
+    const auto t = static_cast<std::size_t>(tiles);
+    const Eigen::Vector3d offset(static_cast<double>(k % t), static_cast<double>(k / t % t),
+                                 static_cast<double>(k / t / t));
+    for (std::size_t i = 0; i < p.size(); ++i, ++to) {
+      q.radius[to] = p.radius[i];
+      q.mass[to] = p.mass[i];
+      q.sx[to] = (wrapped(p.sx[i]) + offset[0]) / tiles;
+      q.sy[to] = (wrapped(p.sy[i]) + offset[1]) / tiles;
+      q.sz[to] = (wrapped(p.sz[i]) + offset[2]) / tiles;
+      q.vx[to] = p.vx[i];
+      q.vy[to] = p.vy[i];
+      q.vz[to] = p.vz[i];
+    }
+  }
+  return all;
+}
+
+}  // namespace grainlaw::bench
