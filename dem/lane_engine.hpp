@@ -1,5 +1,5 @@
 #pragma once
-// The two halves of a time step on lanes (dem/lanes.hpp), for a Simulation that runs on them.
+// Time steps on lanes (dem/lanes.hpp), for a Simulation that runs on them.
 
 #include "dem/lane_pass.hpp"
 #include "dem/simulation.hpp"

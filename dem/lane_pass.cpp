@@ -169,9 +169,9 @@ Drifted kick_and_drift_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t 
   return drift.how();
 }
 
-/// Second half of a step; `after` gets each vector of spheres with its accelerations and velocities.
+/// Second half of a step but for storing velocities: after(group, lane, a_x, a_y, a_z, v_x, v_y, v_z) gets each vector of spheres.
 template <bool portable, class Real, class After>
-LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end, const After& after) {
+LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end, const After& after) {
   const Tag<Real> d;
   const MultiplyAdd<portable> multiply_add;
   const hn::RebindToSigned<Tag<Real>> di;
@@ -245,9 +245,9 @@ LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t
 }
 
 template <bool portable, class Real>
-LaneSums end_step_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
+LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
-  return force_and_kick_on<portable>(lanes, step, begin, end,
+  return forces_on<portable>(lanes, step, begin, end,
                                      [&](std::size_t g, std::size_t o, auto, auto, auto, auto vx, auto vy, auto vz) {
                                        SphereGroup<Real>& own = lanes.group[g];
                                        hn::Store(vx, d, own.vx + o);
@@ -257,10 +257,10 @@ LaneSums end_step_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin
 }
 
 template <bool portable, class Real>
-LaneSums end_and_begin_on(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
+LaneSums force_kick_drift_on(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
                           Drifted& how) {
   Drift<portable, Real> drift(next);
-  const LaneSums sums = force_and_kick_on<portable>(
+  const LaneSums sums = forces_on<portable>(
       lanes, step, begin, end,
       [&](std::size_t g, std::size_t o, auto ax, auto ay, auto az, auto vx, auto vy, auto vz) {
         drift(lanes, lanes.next_row, g, o, ax, ay, az, vx, vy, vz);
@@ -283,11 +283,11 @@ LaneSums end_and_begin_on(Lanes<Real>& lanes, const LaneStep& step, const LaneSt
     return GRAINLAW_BY_BITS(kick_and_drift_on, lanes, step, begin, end);                                          \
   }                                                                                                               \
   LaneSums force_and_kick_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {  \
-    return GRAINLAW_BY_BITS(end_step_on, lanes, step, begin, end);                                                \
+    return GRAINLAW_BY_BITS(force_and_kick_on, lanes, step, begin, end);                                                \
   }                                                                                                               \
   LaneSums force_kick_drift_##name(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, \
                                    std::size_t end, Drifted& how) {                                               \
-    return GRAINLAW_BY_BITS(end_and_begin_on, lanes, step, next, begin, end, how);                                \
+    return GRAINLAW_BY_BITS(force_kick_drift_on, lanes, step, next, begin, end, how);                                \
   }
 GRAINLAW_PASSES(float, mixed)
 GRAINLAW_PASSES(double, full)

@@ -1,5 +1,5 @@
 #pragma once
-// The two passes of a time step over groups of sixteen spheres, on the widest vectors that the machine has. Equations:
+// The passes of a time step over groups of sixteen spheres, on the widest vectors that the machine has. Equations:
 // dem/contact_law.hpp and dem/simulation.hpp. Everything in internal units (dem/lanes.hpp).
 
 #include <array>
