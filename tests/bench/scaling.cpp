@@ -1,14 +1,20 @@
 // What a step of the engine costs with more threads, and in larger scenes, beside one thread and one packing of 9261 spheres:
-//   bench_scaling [--threads T] [--tiles T] [--rounds K] [--warm-up K] [--nu NU]... FOLDER
-// Both take turns of some 50 ms in one process, so that a machine whose speed changes from minute to minute slows both alike.
-// Packings are prepared once and kept in FOLDER, then sheared by D2 for the steps of the warm-up before the turns begin; --tiles
-// repeats the packing T times along each axis. Prints "speedup.PRECISION.NU VALUE" (--threads) or "cost.PRECISION.NU VALUE" (--tiles),
-// of the sums over all turns, and quartiles of the turns. Run it alone, with one thread on a pinned core (taskset -c 1).
+//   bench_scaling --threads T|--tiles T [--rounds K] [--warm-up K] [--nu NU]... FOLDER
+// Packings are prepared once and kept in FOLDER, then sheared by D2 for the steps of the warm-up. Both settings take turns in one process, so that a
+// machine whose speed changes from minute to minute slows both alike.
+//   --threads: both take the same 140 steps from the same state, again and again. A step has the same work each time, so its
+//     faster repeats are those in which nobody else took a processor, and its time is their first decile (steps with a new list
+//     included). Prints "speedup.PRECISION.NU VALUE", of the sums over the steps, and "disturbed.", of all repeats as they were.
+//   --tiles: the packing repeated T times along each axis, one thread, turns of some 50 ms. Its steps are too long to find
+//     undisturbed ones: processor time counts. Prints "cost.PRECISION.NU VALUE", of the sums over all turns.
+// Run it alone, --tiles on a pinned core (taskset -c 0).
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <ctime>
+#include <numeric>
 
 #include "tests/bench/sheared_packing.hpp"
 
@@ -17,25 +23,74 @@ namespace {
 using namespace grainlaw;
 
 constexpr std::int64_t kSpheres = 9261;
-constexpr int kStepsOfATurn = 300;  // of one packing
 
-struct Times {
-  double alone = 0, other = 0;  // [s]
-  std::vector<double> ratio;    // of each turn, in order of size
+struct Pair {
+  double alone = 0, other = 0;  // [s] of a sphere and step
 };
 
-Times take_turns(bench::Sheared& alone, bench::Sheared& other, int steps_of_other, int rounds) {
-  advance(alone, kStepsOfATurn);
-  advance(other, steps_of_other);
-  Times times;
-  for (int k = 0; k < rounds; ++k) {
-    const double a = advance(alone, kStepsOfATurn), b = advance(other, steps_of_other);
-    times.alone += a;
-    times.other += b;
-    times.ratio.push_back(a / b);
+/// Wall time of each step in each repeat.
+struct Steps {
+  std::vector<std::vector<double>> seconds = std::vector<std::vector<double>>(140);
+
+  void repeat(const dem::State& state, const dem::EngineOptions& options) {
+    bench::Sheared shear = bench::start_shear(state, options);
+    bench::advance(shear, 10);  // fills the caches
+    for (std::vector<double>& repeats : seconds) repeats.push_back(bench::advance(shear, 1));
   }
-  std::sort(times.ratio.begin(), times.ratio.end());
-  return times;
+
+  double mean() const {
+    double sum = 0;
+    for (const auto& repeats : seconds)
+      sum += std::accumulate(repeats.begin(), repeats.end(), 0.0) / static_cast<double>(repeats.size());
+    return sum / static_cast<double>(seconds.size());
+  }
+
+  double undisturbed() const {
+    double sum = 0;
+    for (std::vector<double> repeats : seconds) {
+      std::sort(repeats.begin(), repeats.end());
+      sum += repeats[repeats.size() / 10];
+    }
+    return sum / static_cast<double>(seconds.size());
+  }
+};
+
+struct Threads {
+  Pair undisturbed, disturbed;
+};
+
+Threads compare_threads(const dem::State& state, dem::EngineOptions options, int threads, int rounds) {
+  Steps alone, other;
+  for (int k = 0; k < rounds; ++k) {
+    options.threads = 1;
+    alone.repeat(state, options);
+    options.threads = threads;
+    other.repeat(state, options);
+  }
+  return {{alone.undisturbed() / kSpheres, other.undisturbed() / kSpheres},
+          {alone.mean() / kSpheres, other.mean() / kSpheres}};
+}
+
+double processor_time(bench::Sheared& shear, int steps) {
+  const std::clock_t began = std::clock();
+  bench::advance(shear, steps);
+  return static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
+}
+
+Pair compare_sizes(const dem::State& state, const dem::EngineOptions& options, int tiles, int rounds) {
+  constexpr int kStepsOfATurn = 300;  // of one packing
+  const int copies = tiles * tiles * tiles, steps_of_other = std::max(1, kStepsOfATurn / copies);
+  bench::Sheared alone = bench::start_shear(state, options),
+                 other = bench::start_shear(bench::tiled(state, tiles), options);
+  bench::advance(alone, kStepsOfATurn);
+  bench::advance(other, steps_of_other);
+  Pair seconds;
+  for (int k = 0; k < rounds; ++k) {
+    seconds.alone += processor_time(alone, kStepsOfATurn);
+    seconds.other += processor_time(other, steps_of_other);
+  }
+  const double spheres = static_cast<double>(kSpheres) * rounds;
+  return {seconds.alone / (spheres * kStepsOfATurn), seconds.other / (spheres * copies * steps_of_other)};
 }
 
 }  // namespace
@@ -46,33 +101,34 @@ int main(int argc, char** argv) try {
   int threads = 1, tiles = 1, rounds = 80, warm_up = 20000;
   std::vector<double> densities{0.66, 0.82};
   app.add_option("folder", folder)->required();
-  app.add_option("--threads", threads)->check(CLI::PositiveNumber);
-  app.add_option("--tiles", tiles)->check(CLI::PositiveNumber);
+  CLI::Option_group* other = app.add_option_group("the other setting");
+  other->add_option("--threads", threads)->check(CLI::PositiveNumber);
+  other->add_option("--tiles", tiles)->check(CLI::PositiveNumber);
+  other->require_option(1);
   app.add_option("--rounds", rounds)->check(CLI::PositiveNumber);
   app.add_option("--warm-up", warm_up);
   app.add_option("--nu", densities);
   CLI11_PARSE(app, argc, argv);
 
   for (const double nu : densities) {
-    const dem::State state = bench::warmed_up(bench::packing_at(folder, kSpheres, nu), warm_up),
-                     large = bench::tiled(state, tiles);
-    const int copies = tiles * tiles * tiles, steps_of_other = std::max(1, kStepsOfATurn / copies);
+    const dem::State state = bench::warmed_up(bench::packing_at(folder, kSpheres, nu), warm_up);
     for (const auto& [name, precision] :
          {std::pair{"mixed", dem::Precision::mixed}, {"double", dem::Precision::full}}) {
       dem::EngineOptions options;
       options.precision = precision;
-      bench::Sheared alone = bench::start_shear(state, options);
-      options.threads = threads;
-      bench::Sheared other = bench::start_shear(large, options);
-      const Times times = take_turns(alone, other, steps_of_other, rounds);
-      // seconds of a sphere's step, alone over other
-      const double per_step = static_cast<double>(steps_of_other) * copies / kStepsOfATurn;
-      const auto shown = [&](double a_over_b) { return tiles > 1 ? 1 / (a_over_b * per_step) : a_over_b * per_step; };
-      fmt::print("{}.{}.nu{:.2f} {:.3f}\n", tiles > 1 ? "cost" : "speedup", name, nu, shown(times.alone / times.other));
-      fmt::print("quartiles.{}.nu{:.2f} {:.3f} {:.3f}\n", name, nu, shown(times.ratio[times.ratio.size() / 4]),
-                 shown(times.ratio[times.ratio.size() * 3 / 4]));
-      fmt::print("ns.{}.nu{:.2f} {:.2f}\n", name, nu,
-                 1e9 * times.alone / (static_cast<double>(kSpheres) * kStepsOfATurn * rounds));
+      const auto print = [&](const char* figure, double value) {
+        fmt::print("{}.{}.nu{:.2f} {:.3f}\n", figure, name, nu, value);
+      };
+      if (other->get_option("--threads")->count() > 0) {
+        const Threads times = compare_threads(state, options, threads, rounds);
+        print("speedup", times.undisturbed.alone / times.undisturbed.other);
+        print("disturbed", times.disturbed.alone / times.disturbed.other);
+        print("ns", 1e9 * times.undisturbed.alone);
+      } else {
+        const Pair times = compare_sizes(state, options, tiles, rounds);
+        print("cost", times.other / times.alone);
+        print("ns", 1e9 * times.alone);
+      }
     }
   }
   return 0;
