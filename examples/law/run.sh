@@ -13,8 +13,8 @@ build_grainlaw
 grainlaw=build/release/bin/grainlaw
 
 $grainlaw calibrate --dataset "$inputs/../paper/data/dataset" -o "$out"
-for path in "$inputs"/*.json; do
+for path in "$inputs"/*.json "$inputs"/cycles/*.json; do
   if [[ $path == */spec.json ]]; then continue; fi
-  $grainlaw predict "$out/parameters.json" "$path" --dem --spec "$inputs/spec.json" -o "$out/predictions/$(basename "$path" .json)"
+  $grainlaw predict "$out/parameters.json" "$path" --dem --spec "$(dirname "$path")/spec.json" -o "$out/predictions/$(basename "$path" .json)"
 done
 $grainlaw report "$out" -o "$out/report.html"
