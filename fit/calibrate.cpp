@@ -50,8 +50,10 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
 
 void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
                      const CalibrationOptions& options, const RunControl& control) {
-  calibration.estimates[parameter_index("memory.m")] = {calibration.parameters.memory.m, kUndefined, Status::fixed,
-                                                        "by docs/decisions/0005-memory-law.md"};
+  for (const auto& [name, value] :
+       {std::pair{"memory.m", calibration.parameters.memory.m}, {"memory.g", calibration.parameters.memory.g}})
+    calibration.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
+                                                    "by docs/decisions/0005-memory-law.md"};
   for (const char* group :
        {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {
     if (has_values(calibration, group)) continue;

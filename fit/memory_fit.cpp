@@ -13,7 +13,7 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr int kMemoryParameters = 7;
+constexpr int kMemoryParameters = 8;
 using MemoryJet = ceres::Jet<double, kMemoryParameters>;
 constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number
 constexpr double kWindowRounding = 1e-9;
@@ -22,7 +22,7 @@ const std::vector<std::string> kGivenToMemory{"coordination",        "rattlers",
                                               "stress_ratio_max",    "fabric_max"};
 
 std::vector<std::string> free_names(bool volumetric) {
-  std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.chi"};
+  std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.chi", "memory.kappa"};
   if (volumetric) names.insert(names.end(), {"memory.c_F", "memory.a2"});
   return names;
 }
@@ -130,7 +130,8 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
       const double value = fit.solution.x(static_cast<Eigen::Index>(k));
       *field[parameter_index(name)] = value;
       const double error = fit.stage.estimates[k].estimate.standard_error;
-      if (name != "memory.chi" && error > kVagueParameter * std::abs(value))  // chi may be none
+      if (name != "memory.chi" && name != "memory.kappa" &&
+          error > kVagueParameter * std::abs(value))  // both may be none
         fit.mark_not_identified(
             name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
                       (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));

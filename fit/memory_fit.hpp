@@ -3,7 +3,7 @@
 // unloading and of steady D2 are those of the stages before. Free: G, alpha, k, lambda, chi, c_F, a2. Compared, each segment from
 // its measured start, with windows in which a parameter is what decides (docs/decisions/0005-memory-law.md):
 //   s   shear at constant volume, eps_dev <= stiffness_window (G, alpha) and the rest (chi), each as much; all rows where the volume changes (a2)
-//   F   shear at constant volume, eps_dev <= lag_window (lambda); all rows where the volume changes (c_F)
+//   F   shear at constant volume, eps_dev <= lag_window (lambda, kappa); all rows where the volume changes (c_F)
 //   P   shear at constant volume, all rows (k); elsewhere shown
 // Each test and quantity counts the same, in units of the scales in CalibrationOptions.
 

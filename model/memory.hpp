@@ -4,10 +4,12 @@
 //   Delta   distance from s_r, the stress ratio at the last reversal, along N to |s| = s_lim;  xi = |s - s_r|/Delta
 //   flow    = N - q xi^(m-1) (s - s_r)/Delta,       S = <flow,N>, on co-axial paths 1 - q xi^m
 //   dP      = B dx + A1 S de + k (P_t - P) de,      P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
-//   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha
-//   dF'     = lambda ((F_max/s_max) s - F') de - c_F F' <dx>,  <dx> the compressive part of dx
+//   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha/(1 + g f^2)
+//   dF'     = lambda ((F_max/s_max) s - F') de + kappa (F_max/s_max) d_e s - c_F F' <dx>,  <dx> the compressive part of dx,
+//             d_e s = (d_e sigma' - s d_e P)/P the change of s by shear alone: share kappa of the fabric follows stress at once
 //   A1      = (2/3)(a2 B <F',N> - <sigma',N>)
-//   s_lim   = s_max + chi <k (P_t - P)/B>           stress-dilatancy: while the packing would dilate, it bears more; <> smooth
+//   s_lim   = s_max (z + sqrt(1 + z^2)), z = chi k (P_t - P)/(B s_max)   stress-dilatancy: while the packing would dilate, it bears
+//             more, while it would contract, less: s_max + chi k (P_t - P)/B to first order, and never negative
 //   q       = 1 - min(1, B <dx> <s - a2 F',N>/(DG de)), the share of shear that loads: by elasticity alone compression takes
 //             the stress ratio down, and only what shear adds beyond that is plastic; 1 where the volume is constant or grows
 // P relaxes to its sheared level at constant volume: nu_J = nu_c nu/nu_P is the evolving jamming density, with nu_P the
@@ -26,16 +28,6 @@ namespace grainlaw {
 
 /// Delta, in s_max, below which the stress goes to its limit no faster: no small cycle near the limit is stiff.
 inline constexpr double kLeastDistance = 0.1;
-
-/// Dilatancy over which the positive part of it bends: predictions have slopes to their parameters everywhere.
-inline constexpr double kDilatancyBend = 5e-3;
-
-/// x where x is large, 0 at 0, -kDilatancyBend/2 where x is large and negative.
-template <class T>
-T positive_part(const T& x) {
-  using std::sqrt;
-  return (x + sqrt(x * x + kDilatancyBend * kDilatancyBend) - kDilatancyBend) / 2.0;
-}
 
 /// <s - s_r, N>: a reversal is where it is, or falls, below zero. Zero without shear.
 template <class T>
@@ -109,6 +101,14 @@ Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>
   return N - gone * (pow(xi, m - 1.0) / Delta);
 }
 
+/// s_lim at dilatancy chi k (P_t - P)/B [-].
+template <class T>
+T dilating_limit(const T& s_max, const T& dilatancy) {
+  using std::sqrt;
+  const T z = dilatancy / s_max;
+  return s_max * (z + sqrt(1.0 + z * z));
+}
+
 /// Right-hand side without corotational terms; `m` by memory_moduli, with limits along `direction`. Finite for P > 0 and nu_P > nu_c.
 template <class T>
 LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y,
@@ -124,17 +124,19 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   if (direction.de == 0) return rate;
   const Deviator<T> s = y.sigma / y.P;
   const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
-  const T relaxation = p.memory.k * (P_t - y.P), dilatancy = relaxation / B;
-  const T s_lim = m.s_max + p.memory.chi * positive_part(dilatancy);
+  const T relaxation = p.memory.k * (P_t - y.P);
+  const T s_lim = dilating_limit(m.s_max, T(p.memory.chi * relaxation / B));
   const Deviator<T> loading = memory_flow(s, y.s_r, N, s_lim, p.memory.m);
   const T A1 = (2.0 / 3.0) * (p.memory.a2 * B * y.F.dot(N) - y.sigma.dot(N));
-  const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);
+  const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha) / (1.0 + p.memory.g * f * f);
   const T taken = B * std::max(direction.dx, 0.0) * (s - y.F * p.memory.a2).dot(N), added = DG * direction.de;
   const T q = !(taken > 0.0) ? T(1.0) : taken < added ? T(1.0 - taken / added) : T(0.0);
   const Deviator<T> flow = N + (loading - N) * q;
-  rate.P += (A1 * flow.dot(N) + relaxation) * direction.de;
+  const T sheared_P = (A1 * flow.dot(N) + relaxation) * direction.de, F_of_s = m.F_max / m.s_max;
+  const Deviator<T> sheared_s = (flow * added - s * sheared_P) / y.P;
+  rate.P += sheared_P;
   rate.sigma += flow * added;
-  rate.F += (s * (m.F_max / m.s_max) - y.F) * (p.memory.lambda * direction.de);
+  rate.F += (s * F_of_s - y.F) * (p.memory.lambda * direction.de) + sheared_s * (p.memory.kappa * F_of_s);
   return rate;
 }
 

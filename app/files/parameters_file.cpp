@@ -65,7 +65,7 @@ bool without_exponential(const fit::Calibration& calibration, std::size_t alpha)
   return calibration.estimates[Q_c].status != fit::Status::not_identified && *fields(calibration.parameters)[Q_c] == 0;
 }
 
-/// Files of version 1 come from a memory rung whose k meant another rate: their memory is no law of this program.
+/// Files of earlier versions come from other memory rungs (docs/decisions/0005-memory-law.md): theirs is no law of this program.
 void forget_memory(fit::Calibration& calibration) {
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     if (!std::string(parameter_table()[i].name).starts_with("memory.")) continue;
@@ -84,7 +84,7 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
   const auto values = fields(c.parameters);
   OrderedJson document;
   document["format"] = "grainlaw parameters";
-  document["format_version"] = 2;
+  document["format_version"] = 3;
   document["coupling"] = to_string(c.coupling);
   document["converged"] = c.converged;
   OrderedJson& table = document["parameters"] = OrderedJson::object();
@@ -139,7 +139,7 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
       *values[i] = estimate.value;
     }
     if (document.contains("covariance")) read_covariance(document["covariance"], c.covariance);
-    if (document["format_version"] == 1) forget_memory(c);
+    if (document["format_version"] < 3) forget_memory(c);
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", name, error.what()));
   }

@@ -206,7 +206,7 @@ inline Coverage coverage_of_steady_laws(const CoverageStudy& study) {
 /// that meet such data best. Few rows and long steps, for speed; they are the same for the truth.
 inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   LawParameters<double> truth = interior_truth();
-  truth.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1, 0.7};
+  truth.memory = {0.8, 0.7, 2.5, 26, 150, 10, 1.1, 0.7, 0.6, 0.15};
   truth.lode = {0.03, 0.8};
   SyntheticOptions options;
   options.rows = 12;
@@ -249,7 +249,7 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   for (const fit::Calibration& c : found) {
     for (std::size_t i = 0; i < kParameterCount; ++i) {
       const std::string name = parameter_table()[i].name;
-      if (name == "shear.nu_c" || name == "memory.m" || name == "anisotropy.a0") continue;  // not fitted
+      if (name == "shear.nu_c" || name == "memory.m" || name == "memory.g" || name == "anisotropy.a0") continue;  // not fitted
       coverage.add({name, c.estimates[i]}, target);
     }
   }

@@ -1,4 +1,4 @@
-// parameters.json of version 1: its memory rung is of another law.
+// parameters.json of earlier versions: their memory rungs are other laws.
 #include <Eigen/Core>
 #include <string>
 
@@ -18,26 +18,28 @@ TEST_F(OlderParameters, HaveNoMemoryRung) {
   c.parameters = published_parameters();
   c.nu_min = 0.68;
   c.nu_max = 0.82;
-  c.parameters.memory = {0.9, 0.7, 2, 10, 200, 10, 1, 0.9};
+  c.parameters.memory = {0.9, 0.7, 2.5, 10, 40, 10, 1, 0.9, 0.6, 0.15};
   c.covariance = Eigen::MatrixXd::Identity(kParameterCount, kParameterCount);
   for (std::size_t i = 0; i < kParameterCount; ++i)
     c.estimates[i] = {*fields(c.parameters)[i], 1, fit::Status::fitted, "", 4};
   write_parameters(folder_ / "p.json", {c, "", {}});
-  Json old = read_json(folder_ / "p.json", JsonSource::own);
-  old["format_version"] = 1;
-  write_json(folder_ / "old.json", OrderedJson(old));
-
-  const ParametersFile read = read_parameters(folder_ / "old.json"), whole = read_parameters(folder_ / "p.json");
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const bool memory = std::string(parameter_table()[i].name).starts_with("memory.");
-    EXPECT_EQ(read.calibration.estimates[i].status, memory ? fit::Status::not_identified : fit::Status::fitted);
-    EXPECT_EQ(read.calibration.covariance(k, k), memory ? 0 : 1);
-  }
-  EXPECT_EQ(refusal([&] { require_parameters(read, Rung::evolution, "old.json"); }), "accepted");
+  const ParametersFile whole = read_parameters(folder_ / "p.json");
   EXPECT_EQ(refusal([&] { require_parameters(whole, Rung::memory, "p.json"); }), "accepted");
-  EXPECT_NE(refusal([&] { require_parameters(read, Rung::memory, "old.json"); }).find("older than the memory rung"),
-            std::string::npos);
+  Json old = read_json(folder_ / "p.json", JsonSource::own);
+  for (const int version : {1, 2}) {
+    old["format_version"] = version;
+    write_json(folder_ / "old.json", OrderedJson(old));
+    const ParametersFile read = read_parameters(folder_ / "old.json");
+    for (std::size_t i = 0; i < kParameterCount; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const bool memory = std::string(parameter_table()[i].name).starts_with("memory.");
+      EXPECT_EQ(read.calibration.estimates[i].status, memory ? fit::Status::not_identified : fit::Status::fitted);
+      EXPECT_EQ(read.calibration.covariance(k, k), memory ? 0 : 1);
+    }
+    EXPECT_EQ(refusal([&] { require_parameters(read, Rung::evolution, "old.json"); }), "accepted");
+    EXPECT_NE(refusal([&] { require_parameters(read, Rung::memory, "old.json"); }).find("older than the memory rung"),
+              std::string::npos);
+  }
 }
 
 }  // namespace

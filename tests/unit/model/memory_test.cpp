@@ -14,7 +14,7 @@ namespace {
 LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.782, 0.59, 2, 16.5, 160, 12, 1.18, 0.8};
+  p.memory = {0.782, 0.59, 2, 16.5, 40, 12, 1.18, 0.8, 0.6, 0.15};
   return p;
 }
 
@@ -27,12 +27,17 @@ LawState<double> rate(const LawParameters<double>& p, const LawState<double>& y,
   return law_rate(p, Rung::memory, Coupling::energy, y, nu, d);
 }
 
-double bent(double x) { return (x + std::sqrt(x * x + 25e-6) - 5e-3) / 2; }
+/// Softest along saturated fabric.
+double elastic(const LawParameters<double>& p, double nu_P, double f) {
+  return 0.782 * std::pow(nu_P / p.isotropic.pressure.nu_c - 1, 0.59) / (1 + 0.15 * f * f);
+}
+
+double limit(double s_max, double dilatancy) { return std::exp(std::asinh(dilatancy / s_max)) * s_max; }
 
 TEST(Memory, InvariantFormOnCoaxialPaths) {
   // with sg the sign of the shear: S = 1 - q xi^2, xi = sg (s - s_r)/Delta, Delta = s_lim - sg s_r
   const LawParameters<double> p = parameters();
-  int dilating = 0, partly = 0, not_loading = 0;
+  int dilating = 0, contracting = 0, partly = 0, not_loading = 0;
   for (const double nu : {0.68, 0.74, 0.82}) {
     const double s_max = p.stress_ratio_max.value(nu, p.shear_nu_c), F_max = p.fabric_max.value(nu, p.shear_nu_c);
     for (const double sg : {1.0, -1.0}) {
@@ -40,23 +45,30 @@ TEST(Memory, InvariantFormOnCoaxialPaths) {
         const double P = p.isotropic.P_star(nu), F = sg * 0.05, s_r = -sg * 0.1, s = s_r + sg * 0.2, de = 1.7;
         const LawState<double> r = rate(p, coaxial(P, s, F, s_r), nu, {dx, de, sg * kN});
         const double B = p.isotropic.B_star(nu), A2 = 1.18 * B * F, A1 = 2.0 / 3 * (A2 - s * P);
-        const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59), f = sg * F / F_max;
+        const double f = sg * F / F_max;
+        const double DG = elastic(p, nu, f);
         const double P_t = P + (p.steady.P_star(nu) - P) * f * std::abs(f);
-        const double s_lim = s_max + 0.8 * bent(16.5 * (P_t - P) / B);
+        const double s_lim = limit(s_max, 0.8 * 16.5 * (P_t - P) / B);
         const double q = std::clamp(1 - B * std::max(dx, 0.0) * sg * (s - 1.18 * F) / (DG * de), 0.0, 1.0);
         const double xi = sg * (s - s_r) / (s_lim - sg * s_r), S = 1 - q * xi * xi;
+        const double sheared_P = (A1 * S * sg + 16.5 * (P_t - P)) * de,
+                     sheared_s = (DG * S * sg * de - s * sheared_P) / P;
         dilating += s_lim > 1.01 * s_max ? 1 : 0;
+        contracting += s_lim < 0.99 * s_max ? 1 : 0;
         partly += q > 0 && q < 1 ? 1 : 0;
         not_loading += q == 0 ? 1 : 0;
-        EXPECT_NEAR(r.P, B * dx + (A1 * S * sg + 16.5 * (P_t - P)) * de, 1e-12);
+        EXPECT_NEAR(r.P, B * dx + sheared_P, 1e-12);
         EXPECT_NEAR(r.sigma.dot(kN), A2 * dx + DG * S * sg * de, 1e-12);
-        EXPECT_NEAR(r.F.dot(kN), 160 * (F_max / s_max * s - F) * de - 12 * F * std::max(dx, 0.0), 1e-12);
+        EXPECT_NEAR(r.F.dot(kN),
+                    (40 * (F_max / s_max * s - F)) * de + 0.6 * F_max / s_max * sheared_s - 12 * F * std::max(dx, 0.0),
+                    1e-12);
         EXPECT_LE((r.sigma - r.sigma.dot(kN) * kN).norm() + (r.F - r.F.dot(kN) * kN).norm(), 1e-14) << "stays co-axial";
         EXPECT_TRUE(r.s_r.isZero(0));
       }
     }
   }
   EXPECT_GT(dilating, 0);
+  EXPECT_GT(contracting, 0);
   EXPECT_GT(partly, 0);
   EXPECT_GT(not_loading, 0);
 }
@@ -69,7 +81,7 @@ TEST(Memory, WhileItDilatesItBearsMore) {
   for (const double P : {p.isotropic.P_star(nu), 0.5 * (p.isotropic.P_star(nu) + P_D2), P_D2, 1.02 * P_D2}) {
     const double nu_P = nu * std::exp((P - p.isotropic.P_star(nu)) / p.isotropic.B_star(nu));
     const double dilatancy = 16.5 * (P_D2 - P) / p.isotropic.B_star(nu_P);
-    const double s_lim = s_max + 0.8 * bent(dilatancy);
+    const double s_lim = limit(s_max, 0.8 * dilatancy);
     EXPECT_NEAR(rate(p, coaxial(P, s_lim, F, 0), nu, {0, 1, kN}).sigma.norm(), 0, 1e-14) << P;
     EXPECT_GT(rate(p, coaxial(P, 0.99 * s_lim, F, 0), nu, {0, 1, kN}).sigma.dot(kN), 0) << P;
   }
@@ -80,10 +92,11 @@ TEST(Memory, OnTheLimitCompressionTakesTheStressAlong) {
   LawParameters<double> p = parameters();
   p.memory.chi = 0;
   const double nu = 0.74, P = p.steady.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
-  const double nu_P = nu * std::exp((P - p.isotropic.P_star(nu)) / p.isotropic.B_star(nu)), B = p.isotropic.B_star(nu_P);
+  const double nu_P = nu * std::exp((P - p.isotropic.P_star(nu)) / p.isotropic.B_star(nu)),
+               B = p.isotropic.B_star(nu_P);
   const LawState<double> y = coaxial(P, s_max, 0.05, 0);
   for (const double dx : {0.0, 0.3, 1.0}) EXPECT_NEAR(rate(p, y, nu, {dx, 1, kN}).sigma.dot(kN), s_max * B * dx, 1e-13);
-  const double DG = 0.782 * std::pow(nu_P / p.isotropic.pressure.nu_c - 1, 0.59);
+  const double DG = elastic(p, nu_P, 0.05 / p.fabric_max.value(nu, p.shear_nu_c));
   EXPECT_NEAR(rate(p, y, nu, {9, 1, kN}).sigma.dot(kN), 1.18 * B * 0.05 * 9 + DG, 1e-13) << "no longer";
   // and where shear fades, so does its part, whatever the direction
   const LawState<double> alone = rate(p, y, nu, {1, 0, kZero});
@@ -126,7 +139,7 @@ TEST(Memory, ShearFirstGoesWithTheElasticSlopeInAnyDirectionAfterAReversal) {
   const double nu = 0.7, P = p.isotropic.P_star(nu);
   LawState<double> y = coaxial(P, 0.16, 0.12, 0);
   const LawDirection back{0, 1, -kN};
-  const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59);
+  const double DG = elastic(p, nu, 0.12 / p.fabric_max.value(nu, p.shear_nu_c));
   EXPECT_NEAR(rate(p, y, nu, back).sigma.dot(kN), -DG, 1e-14) << "not yet turned, but treated as if";
   turn_corner(Rung::memory, y, back);
   EXPECT_NEAR(rate(p, y, nu, back).sigma.dot(kN), -DG, 1e-14);
@@ -149,7 +162,7 @@ TEST(Memory, NearTheLimitNothingStiffensAndFromBeyondItComesBack) {
   LawParameters<double> p = parameters();
   p.memory.chi = 0;
   const double nu = 0.7, P = p.isotropic.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
-  const double DG = 0.782 * std::pow(nu / p.isotropic.pressure.nu_c - 1, 0.59);
+  const double DG = elastic(p, nu, 0.1 / p.fabric_max.value(nu, p.shear_nu_c));
   for (const double beyond : {0.999, 1.0, 1.001, 1.3}) {
     const LawState<double> y = coaxial(P, beyond * s_max, 0.1, beyond * s_max);
     const double slope = rate(p, y, nu, {0, 1, kN}).sigma.dot(kN);

@@ -103,7 +103,9 @@ TEST(Parameters, EachNameIsTheFieldThatItSays) {
                                                       {"memory.lambda", &p.memory.lambda},
                                                       {"memory.c_F", &p.memory.c_F},
                                                       {"memory.a2", &p.memory.a2},
-                                                      {"memory.chi", &p.memory.chi}};
+                                                      {"memory.chi", &p.memory.chi},
+                                                      {"memory.kappa", &p.memory.kappa},
+                                                      {"memory.g", &p.memory.g}};
   ASSERT_EQ(expected.size(), kParameterCount);
   const auto field = fields(p);
   for (std::size_t i = 0; i < kParameterCount; ++i) {

@@ -19,7 +19,7 @@ using testing::path_from;
 LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.8, 0.7, 2, 26, 240, 10, 1.1};
+  p.memory = {0.8, 0.7, 2.5, 10, 45, 10, 1.1, 0.7, 0.6, 0.15};
   return p;
 }
 

@@ -25,7 +25,7 @@ constexpr Tolerances kTight{1e-12, 1e-16};
 LawParameters<double> law_with_memory() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.8, 0.7, 2, 24, 200, 9, 1.0, 0.7};
+  p.memory = {0.8, 0.7, 2.5, 10, 45, 9, 1.0, 0.7, 0.6, 0.15};
   p.lode = {0.05, 0.8};  // no row of the paths below stands where s_dev = 0, which has a kink there
   return p;
 }
