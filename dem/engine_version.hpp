@@ -4,6 +4,6 @@
 
 namespace grainlaw::dem {
 
-inline constexpr int kEngineVersion = 3;
+inline constexpr int kEngineVersion = 4;
 
 }  // namespace grainlaw::dem

@@ -169,6 +169,19 @@ Drifted kick_and_drift_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t 
   return drift.how();
 }
 
+/// The overlap sum - sqrt(squared), given `rounded` with the root as it was rounded, and the inverse of that. In float the root's rounding
+/// is the largest error of a shallow overlap; where products can be fused it is known exactly, and given back.
+template <bool portable, class V>
+HWY_INLINE V overlap_of(V rounded, V squared, V root, V inverse) {
+  if constexpr (sizeof(hn::TFromV<V>) == 4 && (kHasFused || portable)) {
+    const MultiplyAdd<portable> multiply_add;
+    const V excess = kHasFused ? hn::MulSub(root, root, squared) : multiply_add(root, root, hn::Neg(squared));
+    return multiply_add(hn::Mul(excess, inverse), hn::Set(hn::DFromV<V>(), 0.5F), rounded);
+  } else {
+    return rounded;
+  }
+}
+
 /// Second half of a step but for storing velocities: after(group, lane, a_x, a_y, a_z, v_x, v_y, v_z) gets each vector of spheres.
 template <bool portable, class Real, class After>
 LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end, const After& after) {
@@ -202,10 +215,12 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
         const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0), motion = gather_rows(d, rows, row, 4);
         const V dx = ex(d, hn::Sub(x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(y, hn::BitCast(di, place.b))),
                 dz = ez(d, hn::Sub(z, hn::BitCast(di, place.c)));
-        const V distance = hn::Sqrt(multiply_add(dz, dz, multiply_add(dy, dy, hn::Mul(dx, dx))));
-        const V delta = hn::Sub(hn::Add(r, place.d), distance);
-        const auto touching = hn::Gt(delta, zero);
+        const V squared = multiply_add(dz, dz, multiply_add(dy, dy, hn::Mul(dx, dx)));
+        const V distance = hn::Sqrt(squared);
+        const V rounded = hn::Sub(hn::Add(r, place.d), distance);
+        const auto touching = hn::Gt(rounded, zero);
         const V inverse = hn::Div(one, distance);
+        const V delta = overlap_of<portable>(rounded, squared, distance, inverse);
         // u . x_ij, of the cell and with the spheres' own velocities
         const V cell = multiply_add(hn::Mul(Lz, dz), dz, multiply_add(hn::Mul(Ly, dy), dy, hn::Mul(hn::Mul(Lx, dx), dx)));
         const V u = multiply_add(hn::Sub(wz, motion.c), dz,
