@@ -3,6 +3,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -27,27 +28,64 @@ void pause_until(const Done& done) {
   for (int i = 0; i < kYields && !done(); ++i) std::this_thread::yield();
 }
 
+/// Blocks that nobody has begun: [low half, high half). The owner takes the first, others the last.
+class alignas(64) Share {
+ public:
+  void set(std::size_t first, std::size_t last) { range_.store(static_cast<std::uint64_t>(last) << 32U | first); }
+  std::optional<std::size_t> take_first() {
+    return take([](std::uint32_t& first, std::uint32_t&) { return first++; });
+  }
+  std::optional<std::size_t> take_last() {
+    return take([](std::uint32_t&, std::uint32_t& last) { return --last; });
+  }
+
+ private:
+  template <class Take>
+  std::optional<std::size_t> take(const Take& one) {
+    std::uint64_t seen = range_.load();
+    for (;;) {
+      auto first = static_cast<std::uint32_t>(seen), last = static_cast<std::uint32_t>(seen >> 32U);
+      if (first >= last) return std::nullopt;
+      const std::size_t block = one(first, last);
+      if (range_.compare_exchange_weak(seen, static_cast<std::uint64_t>(last) << 32U | first)) return block;
+    }
+  }
+
+  std::atomic<std::uint64_t> range_{0};
+};
+
 }  // namespace
 
 struct ThreadTeam::Crew {
   std::vector<std::thread> threads;
-  std::atomic<std::uint64_t> round{0};     // grows by one per loop; workers wait for it
-  std::atomic<int> busy{0};                // workers that have not finished the current loop
-  std::size_t blocks = 0;
-  const std::function<void(std::size_t)>* body = nullptr;
+  std::vector<Share> shares;                   // of the members; the caller's is the first
+  std::atomic<std::uint64_t> round{0};         // grows by one per loop; workers wait for it
+  std::atomic<std::size_t> unfinished{0};      // blocks of the current loop
+  const std::function<void(std::size_t)>* body = nullptr;  // to be read by who has taken a block
   std::mutex failure_mutex;
   std::exception_ptr failure;
-  bool quit = false;
+  std::atomic<bool> quit{false};
 
-  /// The share of one member: always the same blocks, so that their data stay in its caches.
-  void work(std::size_t member) {
-    const std::size_t members = threads.size() + 1;
+  explicit Crew(std::size_t members) : shares(members) {}
+
+  void run(std::size_t block) {
     try {
-      for (std::size_t b = blocks * member / members; b < blocks * (member + 1) / members; ++b) (*body)(b);
+      (*body)(block);
     } catch (...) {
       const std::scoped_lock lock(failure_mutex);
       if (!failure) failure = std::current_exception();
     }
+  }
+
+  /// One's own blocks, in each loop the same, so that their data stay in one's caches; then what slower members have left.
+  void work(std::size_t member) {
+    std::size_t done = 0;
+    for (; const auto block = shares[member].take_first(); ++done) run(*block);
+    for (std::size_t k = 1; k < shares.size(); ++k) {
+      Share& other = shares[(member + k) % shares.size()];
+      for (; const auto block = other.take_last(); ++done) run(*block);
+    }
+    if (done > 0 && unfinished.fetch_sub(done) == done) unfinished.notify_one();
   }
 
   void worker(std::size_t member) {
@@ -58,7 +96,6 @@ struct ThreadTeam::Crew {
       seen = round.load();
       if (quit) return;
       work(member);
-      if (--busy == 0) busy.notify_one();
     }
   }
 
@@ -76,8 +113,9 @@ struct ThreadTeam::Crew {
   }
 };
 
-ThreadTeam::ThreadTeam(int threads) : crew_(std::make_unique<Crew>()) {
+ThreadTeam::ThreadTeam(int threads) {
   if (threads < 1) throw InvalidInput("threads: must be at least 1");
+  crew_ = std::make_unique<Crew>(static_cast<std::size_t>(threads));
   crew_->threads.resize(static_cast<std::size_t>(threads - 1));
   try {
     for (std::size_t i = 0; i < crew_->threads.size(); ++i) {
@@ -99,13 +137,14 @@ void ThreadTeam::for_each_block(std::size_t blocks, const std::function<void(std
     for (std::size_t b = 0; b < blocks; ++b) body(b);
     return;
   }
-  crew.blocks = blocks;
+  const std::size_t members = crew.shares.size();
   crew.body = &body;
-  crew.busy = static_cast<int>(crew.threads.size());
+  crew.unfinished = blocks;
+  for (std::size_t m = 0; m < members; ++m) crew.shares[m].set(blocks * m / members, blocks * (m + 1) / members);
   crew.start_round();
   crew.work(0);
-  pause_until([&] { return crew.busy.load() == 0; });
-  for (int left = crew.busy.load(); left != 0; left = crew.busy.load()) crew.busy.wait(left);
+  pause_until([&] { return crew.unfinished.load() == 0; });
+  for (std::size_t left = crew.unfinished.load(); left != 0; left = crew.unfinished.load()) crew.unfinished.wait(left);
   if (crew.failure) std::rethrow_exception(std::exchange(crew.failure, nullptr));
 }
 

@@ -17,8 +17,8 @@ class ThreadTeam {
 
   int threads() const;
 
-  /// Calls body(block) once for each block in [0, blocks), equal blocks from equal threads; returns when all are done. An exception
-  /// thrown by `body` is rethrown here (the first one).
+  /// Calls body(block) once for each block in [0, blocks), blocks < 2^32, equal blocks from equal threads unless one is late, whose blocks
+  /// others take; returns when all are done. An exception thrown by `body` is rethrown here (the first one).
   void for_each_block(std::size_t blocks, const std::function<void(std::size_t)>& body);
 
  private:

@@ -4,10 +4,12 @@
 #include <sys/resource.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "model/error.hpp"
@@ -52,6 +54,24 @@ TEST_P(ThreadTeamOf, RethrowsAndStaysUsable) {
     std::atomic<int> calls = 0;
     team.for_each_block(64, [&](std::size_t) { ++calls; });
     EXPECT_EQ(calls, 64);
+  }
+}
+
+// One block waits until all others are done, those of the same member among them.
+TEST(ThreadTeam, OthersTakeTheBlocksOfALateMember) {
+  constexpr int kBlocks = 64;
+  for (const std::size_t late : {0U, 32U}) {  // the first ones of two members
+    ThreadTeam team(2);
+    std::atomic<int> done = 0;
+    team.for_each_block(kBlocks, [&](std::size_t block) {
+      const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+      while (block == late && done < kBlocks - 1 && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
+      ++done;
+      if (block == late) {
+        EXPECT_EQ(done, kBlocks);
+      }
+    });
+    EXPECT_EQ(done, kBlocks);
   }
 }
 
