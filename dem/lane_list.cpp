@@ -19,8 +19,10 @@ constexpr int kMaxBinsPerAxis = 1024;
 using Index3 = std::array<std::uint32_t, 3>;
 
 // Bins to the cutoff along each axis. Spheres lie in memory layer by layer of z: thin layers, and what a thread reads of
-// its neighbour's spheres is little.
+// its neighbour's spheres is little. Where a layer has more spheres than this, the cell is cut along y into stripes, one after the
+// other: rows of the layers that a sphere reads stay in a core's own cache.
 constexpr Index3 kReach{1, 1, 2};
+constexpr double kLayer = 3000;
 
 /// The leading 32 bits of a position, as a fraction of the edge.
 std::int32_t leading(std::int32_t x) { return x; }
@@ -33,10 +35,15 @@ struct Spatial {
   std::vector<std::uint32_t> from;    // lane before
   std::vector<std::uint32_t> sphere;
   Index3 bins{1, 1, 1};
+  std::size_t stripe = 1;             // bins along y; the last one may have fewer
   std::vector<std::size_t> start;     // of each bin, and the end
   std::array<float, 3> edge{};
 
-  std::size_t at(std::size_t bx, std::size_t by, std::size_t bz) const { return (bz * bins[1] + by) * bins[0] + bx; }
+  std::size_t bins_of_layer() const { return std::size_t{bins[0]} * bins[1]; }
+  std::size_t at(std::size_t bx, std::size_t by, std::size_t bz) const {
+    const std::size_t before = by / stripe * stripe, width = std::min(stripe, bins[1] - before);
+    return (bins[2] * before + bz * width + by - before) * bins[0] + bx;
+  }
   std::uint32_t bin_along(std::size_t axis, std::int32_t position) const {
     return static_cast<std::uint32_t>(std::uint64_t{static_cast<std::uint32_t>(position)} * bins[axis] >> 32);
   }
@@ -58,6 +65,8 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
     s.bins[a] = static_cast<std::uint32_t>(std::max(1.0, fit));
     s.edge[a] = static_cast<float>(edge[a] * 0x1p-32);
   }
+  const double stripes = std::max(1.0, std::round(static_cast<double>(n) / s.bins[2] / kLayer));
+  s.stripe = static_cast<std::size_t>(std::ceil(s.bins[1] / stripes));
   std::vector<std::uint32_t> bin(n);
   team.for_each_block(block_count(n), [&](std::size_t block) {
     for (std::size_t i = block * kBlockSize; i < std::min(n, (block + 1) * kBlockSize); ++i) {
@@ -67,7 +76,7 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
                                                s.bin_along(2, leading(group.z[l]))));
     }
   });
-  s.start.assign(s.at(0, 0, s.bins[2]) + 1, 0);
+  s.start.assign(s.bins_of_layer() * s.bins[2] + 1, 0);
   for (std::size_t i = 0; i < n; ++i) ++s.start[bin[i] + 1];
   std::partial_sum(s.start.begin(), s.start.end(), s.start.begin());
   s.from.resize(n);
@@ -78,12 +87,13 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
   s.sphere.resize(n);
   s.reach.assign(n + kLanes, 0.0F);
   const auto sphere_at = [&](std::uint32_t lane) { return lanes.listed[lane / kLanes].sphere[lane % kLanes]; };
-  team.for_each_block(s.bins[2], [&](std::size_t layer) {
-    for (std::size_t b = s.at(0, 0, layer); b < s.at(0, 0, layer + 1); ++b) {
+  team.for_each_block(s.bins[2], [&](std::size_t part) {
+    const std::size_t first_bin = part * s.bins_of_layer(), last_bin = first_bin + s.bins_of_layer();
+    for (std::size_t b = first_bin; b < last_bin; ++b) {
       const auto first = s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b]), last = s.from.begin() + static_cast<std::ptrdiff_t>(s.start[b + 1]);
       std::sort(first, last, [&](std::uint32_t p, std::uint32_t q) { return sphere_at(p) < sphere_at(q); });
     }
-    for (std::size_t p = s.start[s.at(0, 0, layer)]; p < s.start[s.at(0, 0, layer + 1)]; ++p) {
+    for (std::size_t p = s.start[first_bin]; p < s.start[last_bin]; ++p) {
       const SphereGroup<Real>& group = lanes.group[s.from[p] / kLanes];
       const std::size_t l = s.from[p] % kLanes;
       s.sphere[p] = lanes.listed[s.from[p] / kLanes].sphere[l];
@@ -285,7 +295,9 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   lanes.near_rung.resize(lanes.rung.size());
   lanes.near_first.assign(groups, 0);
   lanes.near_count.assign(groups, 0);
-  lanes.frontier = (kReach[2] * n / s.bins[2] + 4 * kBlockSize) / kLanes;
+  lanes.frontier = (kReach[2] * n * s.stripe / (std::size_t{s.bins[1]} * s.bins[2]) + 4 * kBlockSize) / kLanes;
+  constexpr std::size_t caches = 8 << 20;
+  lanes.beyond_caches = groups * sizeof(SphereGroup<Real>) > caches;
   lanes.group = std::move(group);
   lanes.listed = std::move(listed);
   for (auto* row : {&lanes.row, &lanes.next_row}) {

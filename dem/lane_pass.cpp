@@ -201,6 +201,7 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
     SphereGroup<Real>& own = lanes.group[g];
     const std::size_t first_rung = lanes.near_first[g], last_rung = first_rung + lanes.near_count[g];
     fetch_frontier(lanes, g);
+    fetch_groups(lanes, g);
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const auto x = hn::Load(di, own.x + o), y = hn::Load(di, own.y + o), z = hn::Load(di, own.z + o);
       const V r = hn::Load(d, own.radius + o);

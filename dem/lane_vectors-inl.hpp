@@ -35,6 +35,22 @@ HWY_INLINE void fetch_frontier(const Lanes<Real>& lanes, std::size_t g) {
   for (std::size_t byte = 0; byte < kLanes * sizeof(SphereRow<Real>); byte += 64) __builtin_prefetch(rows + byte, 0, 2);
 }
 
+/// Asks for the lines of `count` values from `first` on.
+template <bool to_write, class T>
+HWY_INLINE void fetch(const T* first, std::size_t count) {
+  for (std::size_t byte = 0; byte < count * sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(first) + byte, to_write, 3);
+}
+
+/// Asks, in large scenes, for what a pass is about to need of groups near g: their spheres, near rungs, and the rows it will write.
+template <class Real>
+HWY_INLINE void fetch_groups(const Lanes<Real>& lanes, std::size_t g) {
+  constexpr std::size_t ahead = 4;
+  if (!lanes.beyond_caches || g + ahead >= lanes.group.size()) return;
+  fetch<true>(&lanes.group[g + ahead], 1);
+  fetch<false>(lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]);
+  fetch<true>(lanes.next_row.data() + (g + ahead) * kLanes, kLanes);
+}
+
 /// Asks for the first near rungs of the block of groups from `begin` on: they do not follow on those of the block before.
 template <class Real>
 HWY_INLINE void fetch_rungs_from(const Lanes<Real>& lanes, std::size_t begin) {

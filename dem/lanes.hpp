@@ -83,6 +83,7 @@ struct Lanes {
   std::vector<std::size_t> near_first;     ///< of each group
   std::vector<std::uint32_t> near_count;   ///< rungs of them in each group
   std::size_t frontier = 0;                ///< groups from one to the farthest ahead whose rows it reads, roughly
+  bool beyond_caches = false;              ///< more spheres than a core's caches hold from step to step
   Units unit;
 };
 

@@ -14,6 +14,7 @@
 #include "dem/lane_pass.hpp"
 #include "dem/lane_search.hpp"
 #include "dem/lane_state.hpp"
+#include "dem/neighbour_list.hpp"
 #include "dem/reference.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/dem_state_bits.hpp"
@@ -89,6 +90,21 @@ TYPED_TEST(LaneList, D19EqualsBruteForce) {
     }
   }
   EXPECT_GE(lists, 10);
+}
+
+// Layers of so many spheres that the cell is cut into stripes: the pairs are those of the plain list.
+TYPED_TEST(LaneList, D19StripesOfAFlatCell) {
+  scene::Draw draw(24);
+  ThreadTeam team(2);
+  const State state = random_box(30000, 1, {32, 32, 1}, draw);
+  const double skin = 0.2 * mean_radius(state.packing), close = 1e-5 * mean_radius(state.packing);
+  const auto pairs_within = [&](double reach) { return pairs_of(build_list(state.packing, reach, team)); };
+  const std::set<ListedPair> listed =
+      pairs_of(plain_list(make_lanes<TypeParam>(state, 1e-8, skin, 0.1 * skin, team), state.packing, Listed::all));
+  const std::set<ListedPair> within = pairs_within(skin - close), around = pairs_within(skin + close);
+  EXPECT_GT(within.size(), 30000U);
+  EXPECT_TRUE(std::includes(listed.begin(), listed.end(), within.begin(), within.end())) << "missed";
+  EXPECT_TRUE(std::includes(around.begin(), around.end(), listed.begin(), listed.end())) << "invented";
 }
 
 // The near ones are those of the list within the narrow skin, in the same order.
