@@ -19,7 +19,7 @@ TEST_P(Coverage, F2F3CompleteCalibration) {
   const bool white = study.correlation == 0 && study.packing_scatter == 0;
   const std::string name = (white ? "F2." : "F3.") + study.name();
   testing::coverage_table(name, coverage);
-  ASSERT_EQ(coverage.counts().size(), kParameterCount - 3);  // nu_c of shear, m and a0 are not fitted
+  ASSERT_EQ(coverage.counts().size(), kParameterCount - 4);  // nu_c of shear, m, g and a0 are not fitted
   for (const auto& [parameter, count] : coverage.counts()) EXPECT_EQ(count.sets, study.sets) << parameter;
   const double least = white ? 0.93 : 0.90, most = white ? 0.97 : 1;
   testing::expect_coverage(name, coverage, least, most);
