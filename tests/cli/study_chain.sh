@@ -3,7 +3,7 @@ set -euo pipefail
 grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
 cat >spec.json <<'JSON'
-{"particles": 500, "seeds": [1, 2], "strain_rate": 2000, "rows": 40, "nu_end": 0.67, "densities": [0.70, 0.73, 0.76, 0.80],
+{"particles": 1000, "seeds": [1, 2], "strain_rate": 1000, "rows": 40, "nu_end": 0.67, "densities": [0.70, 0.73, 0.76, 0.80],
  "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration"}, {"mode": "UNI", "role": "validation"}]}
 JSON
 echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.2}}]}' >path.json
