@@ -12,13 +12,17 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double kRounding = 1e-5;  // of distances in single precision
-constexpr double kNearSkin = 0.15;  // of the list's skin: measured, docs/performance.md
 
-double near_skin(const Simulation& sim) { return kNearSkin * sim.list.skin; }  // [m]
+// Near skins of spheres: for so many steps at their speed, the rest over the list's skin. Measured, docs/performance.md.
+constexpr double kNearSteps = 70, kNearMemory = 0.92, kLeastNearSkin = 0.05, kMostNearSkin = 0.3;
+// A list is made when two spheres may have come so near each other that less than this is left for their near skins together.
+constexpr double kLeftForNear = 0.15;
+
+double left_for_near(const Simulation& sim) { return kLeftForNear * sim.list.skin; }  // [m]
 
 /// Calls visit(lanes) with the lanes of the simulation, which must be on them.
-template <class Visit>
-auto with_lanes(Simulation& sim, const Visit& visit) {
+template <class Sim, class Visit>
+auto with_lanes(Sim& sim, const Visit& visit) {
   if (auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) return visit(*mixed);
   return visit(std::get<Lanes<double>>(sim.lanes));
 }
@@ -42,13 +46,17 @@ LaneStep step_of(const Simulation& sim, const Lanes<Real>& lanes) {
   return step;
 }
 
-/// How far a sphere may move against the cell between the time of `since` [m], when pairs up to `skin` apart were found, and now, so
-/// that all up to `other_skin` apart are still among them. In internal units.
+/// The shortest that a distance in the cell `since` [m] may have become, over what it was.
+double stretch(const Simulation& sim, const Eigen::Matrix3d& since) {
+  return std::min(1.0, (sim.state.packing.H.diagonal().array() / since.diagonal().array()).minCoeff());
+}
+
+/// How far a sphere may move against the cell from when the list was made, so that all pairs up to `near` apart [m] are still in it.
+/// In internal units.
 template <class Real>
-double allowed(const Simulation& sim, const Lanes<Real>& lanes, const Eigen::Matrix3d& since, double skin, double other_skin) {
-  const double stretch = std::min(1.0, (sim.state.packing.H.diagonal().array() / since.diagonal().array()).minCoeff());
-  const double touch = 2 * sim.list.r_max + other_skin;
-  return (stretch * (2 * sim.list.r_max + skin) - touch) / 2 * (1 - kRounding) / lanes.unit.length;
+double allowed(const Simulation& sim, const Lanes<Real>& lanes, double near) {
+  const double touch = 2 * sim.list.r_max;
+  return (stretch(sim, sim.state.ref_H) * (touch + sim.list.skin) - (touch + near)) / 2 * (1 - kRounding) / lanes.unit.length;
 }
 
 /// For the first half of a step.
@@ -58,10 +66,12 @@ LaneStep drift_step(const Simulation& sim, const Lanes<Real>& lanes, const CellM
   step.edge = edges(sim.state.packing.H, lanes.unit);
   const std::array<double, 3> edge = edges(half.H, lanes.unit);
   for (std::size_t a = 0; a < 3; ++a) step.drift[a] = 2 * step.half_dt / edge[a] * kQuantaPerEdge<Real>;
-  step.allowed = allowed(sim, lanes, sim.state.ref_H, sim.list.skin, near_skin(sim));
-  step.near_allowed = allowed(sim, lanes, sim.near_H, near_skin(sim), 0);
-  const double growth = (sim.state.packing.H.diagonal().array() / sim.near_H.diagonal().array()).maxCoeff();
-  step.list_in_danger = !(sim.near_moved / lanes.unit.length * growth + step.near_allowed < step.allowed * (1 - kRounding));
+  step.allowed = allowed(sim, lanes, left_for_near(sim));
+  const double near_stretch = stretch(sim, sim.near_H);
+  step.near_stretch = near_stretch * (1 - kRounding);
+  step.near_loss = (1 - near_stretch) * sim.list.r_max / lanes.unit.length;
+  const double growth = std::max(1.0, (sim.state.packing.H.diagonal().array() / sim.near_H.diagonal().array()).maxCoeff());
+  step.list_in_danger = !(sim.near_reach / lanes.unit.length * growth < step.allowed * (1 - kRounding));
   return step;
 }
 
@@ -119,12 +129,12 @@ bool suits_lanes(const Simulation& sim, const CellMotion& motion) {
 
 void enter_lanes(Simulation& sim) {
   if (sim.options.precision == Precision::mixed) {
-    sim.lanes = make_lanes<float>(sim.state, sim.dt, sim.list.skin, near_skin(sim), *sim.team);
+    sim.lanes = make_lanes<float>(sim.state, sim.dt, sim.list.skin, left_for_near(sim), *sim.team);
   } else {
-    sim.lanes = make_lanes<double>(sim.state, sim.dt, sim.list.skin, near_skin(sim), *sim.team);
+    sim.lanes = make_lanes<double>(sim.state, sim.dt, sim.list.skin, left_for_near(sim), *sim.team);
   }
   with_lanes(sim, [&](auto& lanes) { refresh_rows(sim, lanes); });
-  list_still_holds(sim);
+  sim.near_step = -1;
   repick_near(sim);
 }
 
@@ -139,17 +149,16 @@ Drifted drift_lanes(Simulation& sim, const CellMotion& half) {
   });
 }
 
-bool list_still_holds(Simulation& sim) {
+bool list_still_holds(const Simulation& sim) {
   return with_lanes(sim, [&]<class Real>(const Lanes<Real>& lanes) {
     LaneStep step = step_of(sim, lanes);
     step.edge = edges(sim.state.packing.H, lanes.unit);
-    const double most = allowed(sim, lanes, sim.state.ref_H, sim.list.skin, near_skin(sim));
+    const double most = allowed(sim, lanes, left_for_near(sim));
     std::vector<double> moved2(block_count(lanes.spheres));
     for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t begin, std::size_t end) {
       moved2[block] = farthest_moved2(lanes, step, begin, end);
     });
     const double farthest2 = *std::max_element(moved2.begin(), moved2.end());
-    sim.near_moved = std::sqrt(farthest2) * lanes.unit.length;
     return most > 0 && farthest2 < static_cast<double>(static_cast<Real>(most * most));
   });
 }
@@ -158,19 +167,26 @@ void repick_near(Simulation& sim) {
   sim.near_H = sim.state.packing.H;
   with_lanes(sim, [&](auto& lanes) {
     const std::array<double, 3> edge = edges(sim.near_H, lanes.unit);
-    const double skin = near_skin(sim) / lanes.unit.length;
-    for_each_block_of_groups(sim, lanes,
-                             [&](std::size_t, std::size_t begin, std::size_t end) { pick_near(lanes, edge, skin, begin, end); });
+    const double skin = sim.list.skin / lanes.unit.length, dt = sim.dt / lanes.unit.time;
+    const double steps = sim.near_step < 0 ? 0 : static_cast<double>(sim.state.step - sim.near_step);
+    const NearSkins skins{kNearSteps * dt, steps * dt, kNearMemory, kLeastNearSkin * skin, kMostNearSkin * skin, allowed(sim, lanes, 0)};
+    std::vector<double> reach(block_count(lanes.spheres));
+    for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t begin, std::size_t end) {
+      reach[block] = choose_near_skins(lanes, edge, skins, begin, end);
+    });
+    sim.near_reach = *std::max_element(reach.begin(), reach.end()) * lanes.unit.length;
+    sim.near_step = sim.state.step;
+    for_each_block_of_groups(sim, lanes, [&](std::size_t, std::size_t begin, std::size_t end) { pick_near(lanes, edge, begin, end); });
   });
 }
 
 void rearrange_lanes(Simulation& sim) {
   with_lanes(sim, [&](auto& lanes) {
     const double length = lanes.unit.length;
-    arrange(lanes, edges(sim.state.packing.H, lanes.unit), sim.list.skin / length, near_skin(sim) / length, *sim.team);
+    arrange(lanes, edges(sim.state.packing.H, lanes.unit), sim.list.skin / length, left_for_near(sim) / length, *sim.team);
     refresh_rows(sim, lanes);
   });
-  sim.near_moved = 0;
+  sim.near_step = -1;
   repick_near(sim);
 }
 

@@ -18,8 +18,8 @@ void enter_lanes(Simulation& sim);
 /// First half of a step: kick, drift.
 Drifted drift_lanes(Simulation& sim, const CellMotion& half);
 
-/// Whether all pairs that near ones are picked from are in the list. Notes in sim.near_moved how far spheres have moved.
-bool list_still_holds(Simulation& sim);
+/// Whether all pairs that near ones are picked from are in the list.
+bool list_still_holds(const Simulation& sim);
 
 /// New near ones, after that question, or a new list at the present positions, in the middle of a step.
 void repick_near(Simulation& sim);

@@ -225,6 +225,7 @@ void move_sphere(const SphereGroup<Real>& a, std::size_t i, SphereGroup<Real>& b
   b.az[j] = a.az[i];
   b.radius[j] = a.radius[i];
   b.inverse_mass[j] = a.inverse_mass[i];
+  b.near_skin[j] = a.near_skin[i];
 }
 
 }  // namespace
@@ -303,7 +304,7 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   for (auto* row : {&lanes.row, &lanes.next_row}) {
     reserve_on_large_pages(*row, nobody + 1);
     row->assign(nobody + 1, {});
-    row->back().radius = Real{kNobodysRadius};
+    row->back().reach = row->back().radius = Real{kNobodysRadius};
   }
 }
 

@@ -58,8 +58,9 @@ void write_rows_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
       const auto place = [&](const FixedPoint<Real>* x) { return hn::BitCast(d, hn::Load(di, x + o)); };
       const auto predicted = [&](const Real* v, const Real* a) { return multiply_add(h, hn::Load(d, a + o), hn::Load(d, v + o)); };
       auto* to = reinterpret_cast<Real*>(lanes.row.data() + g * kLanes + o);
-      store_rows(d, {place(own.x), place(own.y), place(own.z), hn::Load(d, own.radius + o)}, to, 0);
-      store_rows(d, {predicted(own.vx, own.ax), predicted(own.vy, own.ay), predicted(own.vz, own.az), hn::Zero(d)}, to, 4);
+      const auto radius = hn::Load(d, own.radius + o);
+      store_rows(d, {place(own.x), place(own.y), place(own.z), hn::Add(radius, hn::Load(d, own.near_skin + o))}, to, 0);
+      store_rows(d, {predicted(own.vx, own.ax), predicted(own.vy, own.ay), predicted(own.vz, own.az), radius}, to, 4);
     }
   }
 }
@@ -109,7 +110,7 @@ class Drift {
  public:
   explicit Drift(const LaneStep& step)
       : h_(set(step.half_dt)), x_(set(step.drift[0])), y_(set(step.drift[1])), z_(set(step.drift[2])),
-        moved2_(step), allowed2_(square(step.allowed)), near_allowed2_(square(step.near_allowed)), list_in_danger_(step.list_in_danger) {}
+        moved2_(step), allowed2_(square(step.allowed)), near_stretch_(set(step.near_stretch)), near_loss_(set(step.near_loss)), list_in_danger_(step.list_in_danger) {}
 
   /// Spheres from lane o of group g on, with their accelerations and velocities; their rows go to `row`.
   HWY_INLINE void operator()(Lanes<Real>& lanes, std::vector<SphereRow<Real>>& row, std::size_t g, std::size_t o, V ax, V ay, V az, V vx,
@@ -131,10 +132,12 @@ class Drift {
     hn::Store(z, di, own.z + o);
     const ListedGroup<Real>& listed = lanes.listed[g];
     if (list_in_danger_) listed_ = hn::And(listed_, hn::Lt(moved2_(x, y, z, listed.x + o, listed.y + o, listed.z + o), allowed2_));
-    near_ = hn::And(near_, hn::Lt(moved2_(x, y, z, own.near_x + o, own.near_y + o, own.near_z + o), near_allowed2_));
+    const V near_skin = hn::Load(d, own.near_skin + o), near_allowed = hn::Max(hn::Sub(hn::Mul(near_stretch_, near_skin), near_loss_), hn::Zero(d));
+    near_ = hn::And(near_, hn::Lt(moved2_(x, y, z, own.near_x + o, own.near_y + o, own.near_z + o), hn::Mul(near_allowed, near_allowed)));
     auto* to = reinterpret_cast<Real*>(row.data() + g * kLanes + o);
-    store_rows(d, {hn::BitCast(d, x), hn::BitCast(d, y), hn::BitCast(d, z), hn::Load(d, own.radius + o)}, to, 0);
-    store_rows(d, {multiply_add(h_, ax, vx), multiply_add(h_, ay, vy), multiply_add(h_, az, vz), hn::Zero(d)}, to, 4);
+    const V radius = hn::Load(d, own.radius + o);
+    store_rows(d, {hn::BitCast(d, x), hn::BitCast(d, y), hn::BitCast(d, z), hn::Add(radius, near_skin)}, to, 0);
+    store_rows(d, {multiply_add(h_, ax, vx), multiply_add(h_, ay, vy), multiply_add(h_, az, vz), radius}, to, 4);
   }
 
   Drifted how() const {
@@ -149,7 +152,7 @@ class Drift {
 
   V h_, x_, y_, z_;
   Moved2<Real, portable> moved2_;
-  V allowed2_, near_allowed2_;
+  V allowed2_, near_stretch_, near_loss_;
   bool list_in_danger_;
   V limit_ = set(sizeof(Real) == 4 ? 0x1p29 : 0x1p49);
   hn::Mask<D> sane_ = hn::Eq(limit_, limit_), listed_ = sane_, near_ = sane_;
@@ -218,7 +221,7 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
                 dz = ez(d, hn::Sub(z, hn::BitCast(di, place.c)));
         const V squared = multiply_add(dz, dz, multiply_add(dy, dy, hn::Mul(dx, dx)));
         const V distance = hn::Sqrt(squared);
-        const V rounded = hn::Sub(hn::Add(r, place.d), distance);
+        const V rounded = hn::Sub(hn::Add(r, motion.d), distance);
         const auto touching = hn::Gt(rounded, zero);
         const V inverse = hn::Div(one, distance);
         const V delta = overlap_of<portable>(rounded, squared, distance, inverse);

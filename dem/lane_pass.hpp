@@ -19,7 +19,7 @@ struct LaneStep {
   std::array<double, 3> rate{};   ///< L there, diagonal
   double allowed = 0;             ///< a sphere may move against the cell since the list was made
   bool list_in_danger = true;     ///< false: it cannot have moved so far while the near ones last
-  double near_allowed = 0;        ///< ... since the near ones were picked
+  double near_stretch = 0, near_loss = 0;  ///< it may move near_stretch * near_skin - near_loss since the near ones were picked
   double stiffness = 0, viscosity = 0, drag = 0;  ///< k, gamma, gamma_b
   bool portable_bits = false;     ///< round as machines with a fused a b + c do, at a price where there is none
 };

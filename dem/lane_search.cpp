@@ -19,7 +19,37 @@ namespace HWY_NAMESPACE {
 namespace {
 
 template <class Real>
-void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
+double choose_near_skins_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
+  const Tag<Real> d;
+  const hn::RebindToSigned<Tag<Real>> di;
+  using V = hn::Vec<Tag<Real>>;
+  const auto set = [&](double x) { return hn::Set(d, static_cast<Real>(x)); };
+  const auto length = [&](V x, V y, V z) { return hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)))); };
+  const Edge<Tag<Real>, false> ex(d, edge[0]), ey(d, edge[1]), ez(d, edge[2]);
+  const V duration = set(skins.duration), durations = set(skins.since > 0 ? skins.duration / skins.since : 0), memory = set(skins.memory),
+          least = set(skins.least), most = set(skins.most), listed = set(skins.listed);
+  V farthest = hn::Zero(d);
+  for (std::size_t g = begin; g < end; ++g) {
+    SphereGroup<Real>& own = lanes.group[g];
+    const ListedGroup<Real>& then = lanes.listed[g];
+    for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
+      const auto at = [&](const Real* x) { return hn::Load(d, x + o); };
+      const auto since = [&](const FixedPoint<Real>* x, const FixedPoint<Real>* x_0) { return hn::Sub(hn::Load(di, x + o), hn::Load(di, x_0 + o)); };
+      const V speed = length(at(own.vx), at(own.vy), at(own.vz));
+      const V moved = length(ex(d, since(own.x, own.near_x)), ey(d, since(own.y, own.near_y)), ez(d, since(own.z, own.near_z)));
+      const V moved_in_all = length(ex(d, since(own.x, then.x)), ey(d, since(own.y, then.y)), ez(d, since(own.z, then.z)));
+      const V wanted = hn::Max(hn::Max(hn::Mul(duration, speed), hn::Mul(durations, moved)), hn::Max(hn::Mul(memory, at(own.near_skin)), least));
+      const V skin = hn::Max(hn::Min(hn::Min(wanted, most), hn::Sub(listed, moved_in_all)), hn::Zero(d));
+      hn::Store(skin, d, own.near_skin + o);
+      farthest = hn::Max(farthest, hn::Add(skin, moved_in_all));
+    }
+    for (std::size_t l = 0; l < kLanes; ++l) lanes.row[g * kLanes + l].reach = own.radius[l] + own.near_skin[l];
+  }
+  return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, farthest)));
+}
+
+template <class Real>
+void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
   const hn::RebindToSigned<Tag<Real>> di;
   using V = hn::Vec<Tag<Real>>;
@@ -37,7 +67,7 @@ void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, double 
       hn::Store(x, di, own.near_x + o);
       hn::Store(y, di, own.near_y + o);
       hn::Store(z, di, own.near_z + o);
-      const V reach = hn::Add(hn::Load(d, own.radius + o), hn::Set(d, static_cast<Real>(near_skin)));
+      const V reach = hn::Add(hn::Load(d, own.radius + o), hn::Load(d, own.near_skin + o));
       for (std::size_t rung = lanes.first_rung[g]; rung < lanes.first_rung[g + 1]; ++rung) {
         const std::uint32_t* row = lanes.rung[rung].row + o;
         const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0);
@@ -104,11 +134,17 @@ void order_by_key_on(std::int32_t* key, const std::uint32_t* value, std::size_t 
   }
 }
 
-void pick_near_mixed(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
-  pick_near_on(lanes, edge, near_skin, begin, end);
+double choose_near_skins_mixed(Lanes<float>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
+  return choose_near_skins_on(lanes, edge, skins, begin, end);
 }
-void pick_near_full(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
-  pick_near_on(lanes, edge, near_skin, begin, end);
+double choose_near_skins_full(Lanes<double>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
+  return choose_near_skins_on(lanes, edge, skins, begin, end);
+}
+void pick_near_mixed(Lanes<float>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
+  pick_near_on(lanes, edge, begin, end);
+}
+void pick_near_full(Lanes<double>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
+  pick_near_on(lanes, edge, begin, end);
 }
 
 }  // namespace
@@ -119,16 +155,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace grainlaw::dem {
 
+HWY_EXPORT(choose_near_skins_mixed);
+HWY_EXPORT(choose_near_skins_full);
 HWY_EXPORT(pick_near_mixed);
 HWY_EXPORT(pick_near_full);
 HWY_EXPORT(find_near_on);
 HWY_EXPORT(order_by_key_on);
 
-void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(pick_near_mixed)(lanes, edge, near_skin, begin, end);
+double choose_near_skins(Lanes<float>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
+  return HWY_DYNAMIC_DISPATCH(choose_near_skins_mixed)(lanes, edge, skins, begin, end);
 }
-void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(pick_near_full)(lanes, edge, near_skin, begin, end);
+double choose_near_skins(Lanes<double>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
+  return HWY_DYNAMIC_DISPATCH(choose_near_skins_full)(lanes, edge, skins, begin, end);
+}
+void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(pick_near_mixed)(lanes, edge, begin, end);
+}
+void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
+  HWY_DYNAMIC_DISPATCH(pick_near_full)(lanes, edge, begin, end);
 }
 FoundNear find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, float narrower,
                     std::uint32_t* found) {

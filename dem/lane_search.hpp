@@ -11,10 +11,23 @@
 
 namespace grainlaw::dem {
 
-/// Picks from the list, at the present positions, all pairs nearer than r_i + r_j + near_skin; the rows must be current.
-/// `edge` and `near_skin` in internal units.
-void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
-void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, double near_skin, std::size_t begin, std::size_t end);
+/// How near_skin of each sphere is chosen.
+struct NearSkins {
+  double duration = 0;         ///< for which it would last at the sphere's speed
+  double since = 0;            ///< since the near ones were picked: the speed is also the mean one of that time; 0: not known
+  double memory = 0;           ///< share of the skin that it had which it keeps at least
+  double least = 0, most = 0;
+  double listed = 0;           ///< beyond that, less what a sphere has moved since, the list may lack pairs
+};
+
+/// Sets near_skin, also in the rows. Returns the largest sum of a near_skin and what its sphere has moved since the list was made.
+double choose_near_skins(Lanes<float>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end);
+double choose_near_skins(Lanes<double>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end);
+
+/// Picks from the list, at the present positions, all pairs nearer than their radii and near_skins; the rows must be current.
+/// Everything in internal units.
+void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end);
+void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end);
 
 /// A candidate's view of all spheres for the search of neighbours, in spatial order.
 struct SearchField {

@@ -36,9 +36,9 @@ struct Units {
 template <class Real>
 struct alignas(8 * sizeof(Real)) SphereRow {
   FixedPoint<Real> x, y, z;
-  Real radius;
+  Real reach;       ///< radius and near_skin together
   Real vx, vy, vz;  ///< predicted to the end of the step
-  Real unused;
+  Real radius;
 };
 
 /// Sixteen spheres. Unused lanes have inverse mass 0 and a radius so negative that they touch nobody.
@@ -50,6 +50,7 @@ struct alignas(64) SphereGroup {
   Real vx[kLanes], vy[kLanes], vz[kLanes];
   Real ax[kLanes], ay[kLanes], az[kLanes];
   Real radius[kLanes], inverse_mass[kLanes];
+  Real near_skin[kLanes];  ///< how far it may move before the near ones are picked again, in a cell that keeps its shape
 };
 
 /// The same sixteen when the list was made; most steps need not read them.
@@ -61,9 +62,10 @@ struct alignas(64) ListedGroup {
 
 inline constexpr float kNobodysRadius = -0x1p100F;
 
-// Neighbours are listed twice. The list of all within a wide skin lasts for long; of it those within a narrow skin are
-// picked again and again, which costs about as much as one force pass, and only they are visited for forces. Each
-// sphere's neighbours are in the order of the State in both, so no force depends on when either was made.
+// Neighbours are listed twice. The list of all within a wide skin lasts for long; of it those within narrow skins are
+// picked again and again, which costs two to three force passes, and only they are visited for forces. Each sphere has a narrow
+// skin of its own, by its speed: one in a hundred moves several times as far as the others. Neighbours are in the order of the
+// State in both lists, so no force depends on when either was made, nor on the skins.
 
 /// The k-th neighbours of the sixteen spheres of a group: where their rows begin [bytes].
 struct alignas(64) Rung {

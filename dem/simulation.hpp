@@ -58,7 +58,8 @@ struct Simulation {
                                                    ///< forces and their viscous parts
   std::variant<std::monostate, Lanes<float>, Lanes<double>> lanes;  ///< what is simulated, when not the state itself
   Eigen::Matrix3d near_H = Eigen::Matrix3d::Zero();  ///< cell when the near ones were picked [m], on lanes
-  double near_moved = 0;  ///< how far a sphere had moved against the cell since the list was made, at most, then [m]
+  std::int64_t near_step = -1;  ///< when they were, -1: not since the list was made
+  double near_reach = 0;  ///< how far a sphere may have moved since the list was made, at most, while the near ones last [m]
   std::optional<CellMotion> unkicked;  ///< on lanes: end of a step whose forces wait to be taken with the next step's drift
   std::shared_ptr<ThreadTeam> team;
 };

@@ -39,7 +39,7 @@ struct Scene {
   ThreadTeam team{1};
   Lanes<Real> lanes;
   LaneStep step;
-  double skin = 0, near_skin = 0;
+  double skin = 0, near_skin = 0;  // of two spheres together
 
   Scene() {
     const State& s = packing();
@@ -55,9 +55,11 @@ struct Scene {
     }
     step.stiffness = s.material.stiffness / (unit.mass / unit.time / unit.time);
     step.viscosity = s.material.contact_viscosity / (unit.mass / unit.time);
-    step.allowed = step.near_allowed = skin;
+    step.allowed = skin;
+    step.near_stretch = skin / near_skin;
+    for (SphereGroup<Real>& group : lanes.group) std::fill(std::begin(group.near_skin), std::end(group.near_skin), static_cast<Real>(near_skin / 2));
     write_rows(lanes, step, 0, lanes.group.size());
-    pick_near(lanes, step.edge, near_skin, 0, lanes.group.size());
+    pick_near(lanes, step.edge, 0, lanes.group.size());
   }
 };
 
@@ -104,7 +106,7 @@ template <class Real>
 void pick_near_pass(benchmark::State& state, const std::string& target) {
   use_vector_target(target);
   Scene<Real> scene;
-  for (auto _ : state) pick_near(scene.lanes, scene.step.edge, scene.near_skin, 0, scene.lanes.group.size());
+  for (auto _ : state) pick_near(scene.lanes, scene.step.edge, 0, scene.lanes.group.size());
   per_sphere(state);
   use_vector_target("");
 }

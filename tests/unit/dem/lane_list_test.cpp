@@ -1,6 +1,7 @@
 // Lists of lanes against brute force (hard case D19 for the vector engine), and a state's way through lanes and back.
 #include "dem/lane_list.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,10 +80,10 @@ TYPED_TEST(LaneList, D19EqualsBruteForce) {
         const double skin = draw.uniform(0.1, 0.8) * mean_radius(state.packing);
         const Eigen::Vector3d edge = state.packing.H.diagonal();
         if (!fits_lanes({edge[0], edge[1], edge[2]}, 2 * r_max + skin)) continue;
-        const std::set<ListedPair> listed =
-            pairs_of(plain_list(make_lanes<TypeParam>(state, 1e-8, skin, 0.1 * skin, team), state.packing, Listed::all));
+        const std::set<ListedPair> listed = pairs_of(
+            plain_list(make_lanes<TypeParam>(state, 1e-8, skin, 0.1 * skin, team), state.packing, Listed::all));
         const std::set<ListedPair> within = brute_force(state.packing, skin * (1 - 1e-9)),
-                             around = brute_force(state.packing, skin + 1e-5 * 2 * r_max);
+                                   around = brute_force(state.packing, skin + 1e-5 * 2 * r_max);
         EXPECT_TRUE(std::includes(listed.begin(), listed.end(), within.begin(), within.end())) << "missed";
         EXPECT_TRUE(std::includes(around.begin(), around.end(), listed.begin(), listed.end())) << "invented";
         ++lists;
@@ -107,24 +108,100 @@ TYPED_TEST(LaneList, D19StripesOfAFlatCell) {
   EXPECT_TRUE(std::includes(around.begin(), around.end(), listed.begin(), listed.end())) << "invented";
 }
 
-// The near ones are those of the list within the narrow skin, in the same order.
+/// Near skins between 0 and `most` [m].
+template <class Real>
+void draw_near_skins(Lanes<Real>& lanes, double most, scene::Draw& draw) {
+  for (SphereGroup<Real>& group : lanes.group) {
+    for (Real& skin : group.near_skin) skin = static_cast<Real>(draw.uniform(0, most / lanes.unit.length));
+  }
+}
+
+// The near ones are those of the list within the two spheres' near skins.
 TYPED_TEST(LaneList, D19NearOnesAreAllThatAreNear) {
   scene::Draw draw(20);
   ThreadTeam team(1);
   const State state = random_box(700, 3, {1, 1.5, 1}, draw);
-  const double r = mean_radius(state.packing), near_skin = 0.1 * r;
-  Lanes<TypeParam> lanes = make_lanes<TypeParam>(state, 1e-8, 0.6 * r, near_skin, team);
+  const double r = mean_radius(state.packing), close = 1e-5 * r;
+  Lanes<TypeParam> lanes = make_lanes<TypeParam>(state, 1e-8, 0.6 * r, 0.1 * r, team);
+  draw_near_skins(lanes, 0.3 * r, draw);
   const double length = lanes.unit.length;
   const Eigen::Vector3d edge = state.packing.H.diagonal() / length;
   LaneStep step;
   write_rows(lanes, step, 0, lanes.group.size());
-  pick_near(lanes, {edge[0], edge[1], edge[2]}, near_skin / length, 0, lanes.group.size());
+  pick_near(lanes, {edge[0], edge[1], edge[2]}, 0, lanes.group.size());
   const std::set<ListedPair> all = pairs_of(plain_list(lanes, state.packing, Listed::all)),
-                       near = pairs_of(plain_list(lanes, state.packing, Listed::near));
-  const std::set<ListedPair> within = brute_force(state.packing, near_skin * (1 - 1e-4)), around = brute_force(state.packing, near_skin * (1 + 1e-4));
+                             near = pairs_of(plain_list(lanes, state.packing, Listed::near));
+  Packing widened = state.packing;
+  for (std::size_t t = 0; t < lanes.spheres; ++t) {
+    widened.radius[lanes.listed[t / kLanes].sphere[t % kLanes]] +=
+        static_cast<double>(lanes.group[t / kLanes].near_skin[t % kLanes]) * length;
+  }
+  const std::set<ListedPair> within = brute_force(widened, -close), around = brute_force(widened, close);
   EXPECT_TRUE(std::includes(near.begin(), near.end(), within.begin(), within.end())) << "missed";
   EXPECT_TRUE(std::includes(around.begin(), around.end(), near.begin(), near.end())) << "invented";
   EXPECT_LT(near.size(), all.size());
+}
+
+// As wide as a sphere's speed asks for, within what the list knows; by plain formulas, on all vectors.
+TYPED_TEST(LaneList, NearSkinsFollowSpeeds) {
+  scene::Draw draw(25);
+  ThreadTeam team(1);
+  const State state = random_box(333, 3, {1, 1.5, 1}, draw);
+  const double r = mean_radius(state.packing);
+  for (const std::string& target : vector_targets()) {
+    use_vector_target(target);
+    Lanes<TypeParam> lanes = make_lanes<TypeParam>(state, 1e-8, 0.6 * r, 0.1 * r, team);
+    const double length = lanes.unit.length, r_0 = r / length;
+    const Eigen::Vector3d edge = state.packing.H.diagonal() / length;
+    // each axis moved by up to .1 mean radii since the near ones were picked and since the list was made
+    using Int = FixedPoint<TypeParam>;
+    const auto up_to = [&](double radii) {
+      return static_cast<Int>(draw.uniform(-radii, radii) * r_0 / edge.maxCoeff() * kStepsPerEdge<TypeParam>);
+    };
+    double fastest = 0;
+    for (std::size_t g = 0; g < lanes.group.size(); ++g) {
+      SphereGroup<TypeParam>& group = lanes.group[g];
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        group.near_x[l] = group.x[l] + up_to(0.1), group.near_y[l] = group.y[l] + up_to(0.1),
+        group.near_z[l] = group.z[l] + up_to(0.1);
+        lanes.listed[g].x[l] += up_to(0.1), lanes.listed[g].y[l] += up_to(0.1), lanes.listed[g].z[l] += up_to(0.1);
+        fastest = std::max(fastest, Eigen::Vector3d(group.vx[l], group.vy[l], group.vz[l]).norm());
+      }
+    }
+    draw_near_skins(lanes, 0.5 * r, draw);
+    const Lanes<TypeParam> before = lanes;
+    const auto moved = [&](Int x, Int y, Int z, Int x_0, Int y_0, Int z_0) {
+      const auto part = [](Int a, Int b) { return static_cast<double>(a - b) / kStepsPerEdge<TypeParam>; };
+      return Eigen::Vector3d(part(x, x_0) * edge[0], part(y, y_0) * edge[1], part(z, z_0) * edge[2]).norm();
+    };
+    const double duration = 0.2 * r_0 / fastest;
+    const NearSkins skins{duration, duration / 4, 0.5, 0.15 * r_0, 0.25 * r_0, 0.32 * r_0};
+    const double reach = choose_near_skins(lanes, {edge[0], edge[1], edge[2]}, skins, 0, lanes.group.size());
+    double farthest = 0;
+    int least = 0, most = 0, free = 0, held = 0;
+    for (std::size_t t = 0; t < lanes.spheres; ++t) {
+      const std::size_t l = t % kLanes;
+      const SphereGroup<TypeParam>&g = before.group[t / kLanes], &now = lanes.group[t / kLanes];
+      const ListedGroup<TypeParam>& listed = before.listed[t / kLanes];
+      const double v = Eigen::Vector3d(g.vx[l], g.vy[l], g.vz[l]).norm(),
+                   near = moved(g.x[l], g.y[l], g.z[l], g.near_x[l], g.near_y[l], g.near_z[l]),
+                   in_all = moved(g.x[l], g.y[l], g.z[l], listed.x[l], listed.y[l], listed.z[l]);
+      const double wanted = std::max({skins.duration * v, skins.duration / skins.since * near,
+                                      skins.memory * static_cast<double>(g.near_skin[l]), skins.least});
+      const double expected = std::max(0.0, std::min({wanted, skins.most, skins.listed - in_all}));
+      ASSERT_NEAR(static_cast<double>(now.near_skin[l]), expected, 1e-5 * r_0);
+      ASSERT_NEAR(static_cast<double>(lanes.row[t].reach), static_cast<double>(now.radius[l] + now.near_skin[l]),
+                  1e-6 * r_0);
+      farthest = std::max(farthest, in_all + static_cast<double>(now.near_skin[l]));
+      ++(expected == skins.least ? least : expected == skins.most ? most : expected < wanted ? held : free);
+    }
+    EXPECT_NEAR(reach, farthest, 1e-5 * r_0);
+    fmt::print("{}: {} least, {} most, {} held back by the list, {} as wanted\n", target, least, most, held, free);
+    EXPECT_GT(most, 0);
+    EXPECT_GT(held, 0);
+    EXPECT_GT(free, 0);
+  }
+  use_vector_target("");
 }
 
 // Whatever the number, also none, and on all vectors.
@@ -139,7 +216,8 @@ TEST(LaneSearch, OrdersByKeyWithEveryTarget) {
         key[k] = static_cast<std::int32_t>(100 * k + static_cast<std::size_t>(draw.uniform(0, 99)));
         std::swap(key[k], key[static_cast<std::size_t>(draw.uniform(0, static_cast<double>(k + 1)))]);
       }
-      for (std::size_t k = 0; k < count; ++k) value[k] = static_cast<std::uint32_t>(key[k] / 100);  // 0, 1 ... in the wanted order
+      for (std::size_t k = 0; k < count; ++k)
+        value[k] = static_cast<std::uint32_t>(key[k] / 100);  // 0, 1 ... in the wanted order
       order_by_key(key.data(), value.data(), count, ordered.data());
       for (std::size_t k = 0; k < count; ++k) EXPECT_EQ(ordered[k], k) << target << ", of " << count;
       EXPECT_EQ(ordered[count], 7U) << "written beyond the end";

@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <variant>
+
 #include "dem/averages.hpp"
+#include "dem/lane_list.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/dem_pair_list.hpp"
 #include "tests/support/figure.hpp"
@@ -96,6 +100,42 @@ TEST_P(PairListOfFamily, D19AlongARunThatShearsAndCollapses) {
   expect_figure(scene::figure_name("D19.missed_in_collapse", GetParam()), static_cast<double>(missed), 0);
   EXPECT_NEAR(volume_fraction(sim.state.packing), 1.2, 1e-9);
   EXPECT_GT(sim.rebuilds, 3U);
+}
+
+// On lanes: a few spheres fly through a packing that shears and is compressed; those that touch are among the near ones after every step.
+TEST(NearPairs, D19OfSpheresThatFlyThroughAPacking) {
+  for (const Precision precision : {Precision::mixed, Precision::full}) {
+    State state = scene::jammed({"Paper", 3}, 300, 0.70, 11);
+    Draw draw(59);
+    scene::random_velocities(state.packing, 1, draw);
+    for (std::size_t i = 0; i < state.packing.size(); i += 60) state.packing.vx[i] = 100;
+    EngineOptions options;
+    options.precision = precision;
+    const Eigen::Matrix3d H_0 = state.packing.H;
+    Simulation sim = start_simulation(state, options, scene::at_rest(state));
+    const auto motion = [&](double k) {
+      const Eigen::Vector3d rate(2e-5, -4e-5, -1e-5);  // a step
+      const Eigen::Vector3d F = (rate * k).array().exp();
+      return CellMotion{F.asDiagonal() * H_0, (rate / sim.dt).asDiagonal(), Transport::homogeneous};
+    };
+    long missed = 0, contacts = 0, picks = 0;
+    std::int64_t last_pick = sim.near_step;
+    for (int k = 0; k < 2000; ++k) {
+      advance(sim, motion(k + 0.5), motion(k + 1));
+      picks += sim.near_step == last_pick ? 0 : 1;
+      last_pick = sim.near_step;
+      synchronise(sim);
+      const NeighbourList near = precision == Precision::mixed ? plain_list(std::get<Lanes<float>>(sim.lanes), sim.state.packing, Listed::near)
+                                                               : plain_list(std::get<Lanes<double>>(sim.lanes), sim.state.packing, Listed::near);
+      missed += scene::contacts_missed(near, sim.state.packing);
+      contacts += static_cast<long>(near.j.size());
+    }
+    const std::string name = precision == Precision::mixed ? "mixed" : "double";
+    expect_figure("D19.near_missed." + name, static_cast<double>(missed), 0);
+    EXPECT_GT(contacts, 2000 * 300);
+    EXPECT_GT(picks, 20);
+    EXPECT_LT(picks, 1000) << "near ones picked at every other step: the skins are of no use";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(D20, PairListOfFamily, ::testing::ValuesIn(scene::families()), scene::name_of_family);
