@@ -102,42 +102,77 @@ TEST_P(PairListOfFamily, D19AlongARunThatShearsAndCollapses) {
   EXPECT_GT(sim.rebuilds, 3U);
 }
 
-// On lanes: a few spheres fly through a packing that shears and is compressed; those that touch are among the near ones after every step.
-TEST(NearPairs, D19OfSpheresThatFlyThroughAPacking) {
-  for (const Precision precision : {Precision::mixed, Precision::full}) {
-    State state = scene::jammed({"Paper", 3}, 300, 0.70, 11);
-    Draw draw(59);
-    scene::random_velocities(state.packing, 1, draw);
-    for (std::size_t i = 0; i < state.packing.size(); i += 60) state.packing.vx[i] = 100;
-    EngineOptions options;
-    options.precision = precision;
-    const Eigen::Matrix3d H_0 = state.packing.H;
-    Simulation sim = start_simulation(state, options, scene::at_rest(state));
-    const auto motion = [&](double k) {
-      const Eigen::Vector3d rate(2e-5, -4e-5, -1e-5);  // a step
-      const Eigen::Vector3d F = (rate * k).array().exp();
-      return CellMotion{F.asDiagonal() * H_0, (rate / sim.dt).asDiagonal(), Transport::homogeneous};
-    };
-    long missed = 0, contacts = 0, picks = 0;
-    std::int64_t last_pick = sim.near_step;
-    for (int k = 0; k < 2000; ++k) {
-      advance(sim, motion(k + 0.5), motion(k + 1));
-      picks += sim.near_step == last_pick ? 0 : 1;
-      last_pick = sim.near_step;
-      synchronise(sim);
-      const NeighbourList near = precision == Precision::mixed ? plain_list(std::get<Lanes<float>>(sim.lanes), sim.state.packing, Listed::near)
-                                                               : plain_list(std::get<Lanes<double>>(sim.lanes), sim.state.packing, Listed::near);
-      missed += scene::contacts_missed(near, sim.state.packing);
-      contacts += static_cast<long>(near.j.size());
-    }
-    const std::string name = precision == Precision::mixed ? "mixed" : "double";
-    expect_figure("D19.near_missed." + name, static_cast<double>(missed), 0);
-    EXPECT_GT(contacts, 2000 * 300);
-    EXPECT_GT(picks, 20);
-    EXPECT_LT(picks, 1000) << "near ones picked at every other step: the skins are of no use";
-  }
+NeighbourList near_ones(const Simulation& sim) {
+  const Packing& packing = sim.state.packing;
+  if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) return plain_list(*mixed, packing, Listed::near);
+  return plain_list(std::get<Lanes<double>>(sim.lanes), packing, Listed::near);
 }
 
+struct NearFaults {
+  long missed = 0, listed = 0, looked = 0, picks = 0;
+};
+
+/// On lanes, at a constant rate of strain a step: of spheres that touch after every `every`th step, how many the near ones lack.
+NearFaults near_faults(const State& state, Precision precision, const Eigen::Vector3d& rate, int steps, int every) {
+  EngineOptions options;
+  options.precision = precision;
+  Simulation sim = start_simulation(state, options, scene::at_rest(state));
+  const auto motion = [&](double k) {
+    const Eigen::Vector3d F = (rate * k).array().exp();
+    return CellMotion{F.asDiagonal() * state.packing.H, (rate / sim.dt).asDiagonal(), Transport::homogeneous};
+  };
+  NearFaults sum;
+  for (int k = 0; k < steps; ++k) {
+    const std::int64_t last_pick = sim.near_step;
+    advance(sim, motion(k + 0.5), motion(k + 1));
+    sum.picks += sim.near_step == last_pick ? 0 : 1;
+    if (k % every != 0) continue;
+    synchronise(sim);
+    const NeighbourList near = near_ones(sim);
+    sum.missed += scene::contacts_missed(near, sim.state.packing);
+    sum.listed += static_cast<long>(near.j.size());
+    ++sum.looked;
+  }
+  return sum;
+}
+
+class NearPairs : public ::testing::TestWithParam<Precision> {
+ protected:
+  std::string name(const std::string& what) const {
+    return "D19.near_missed." + what + (GetParam() == Precision::mixed ? ".mixed" : ".double");
+  }
+};
+
+TEST_P(NearPairs, D19OfSpheresThatFlyThroughAPacking) {
+  State state = scene::jammed({"Paper", 3}, 200, 0.70, 11);
+  Draw draw(59);
+  scene::random_velocities(state.packing, 1, draw);
+  for (std::size_t i = 0; i < state.packing.size(); i += 60) state.packing.vx[i] = 100;
+  const NearFaults faults = near_faults(state, GetParam(), {2e-5, -4e-5, -1e-5}, 2000, 11);
+  expect_figure(name("flying"), static_cast<double>(faults.missed), 0);
+  EXPECT_GT(faults.listed, 200 * faults.looked);
+  EXPECT_GT(faults.picks, 20);
+  EXPECT_LT(faults.picks, 1000) << "at every other step: the skins are of no use";
+}
+
+// A lattice at rest in a cell that is pressed along x until its spheres touch: only the cell moves.
+TEST_P(NearPairs, D19OfSpheresThatTheCellBringsTogether) {
+  const int n = 6;
+  const double r = 1e-3, apart = 2.1 * r;
+  std::vector<scene::Sphere> lattice;
+  for (int i = 0; i < n * n * n; ++i) lattice.push_back({r, apart * Eigen::Vector3d(i / (n * n), i / n % n, i % n)});
+  const NearFaults faults =
+      near_faults(scene::state_of(scene::cubic(n * apart), lattice), GetParam(), {-1e-3, 2e-4, 0}, 80, 1);
+  expect_figure(name("pressed"), static_cast<double>(faults.missed), 0);
+  EXPECT_GT(faults.listed, 20 * 2 * n * n * n) << "they have not met for some 20 steps";
+  EXPECT_LT(faults.picks, 20);
+}
+
+std::string name_of_precision(const ::testing::TestParamInfo<Precision>& run) {
+  return run.param == Precision::mixed ? "mixed" : "double";
+}
+
+INSTANTIATE_TEST_SUITE_P(D19, NearPairs, ::testing::Values(Precision::mixed, Precision::full), name_of_precision);
 INSTANTIATE_TEST_SUITE_P(D20, PairListOfFamily, ::testing::ValuesIn(scene::families()), scene::name_of_family);
 
 }  // namespace
