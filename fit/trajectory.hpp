@@ -72,9 +72,10 @@ LawState<T> combination(const LawState<T>& y, double h, const std::array<LawStat
 inline constexpr std::array<double, 5> kStepNodes{0, 1. / 3, 2. / 3, 1. / 2, 1};
 inline constexpr std::array<std::size_t, 7> kStageNode{0, 1, 2, 1, 3, 3, 4};
 
-/// One step of size `h` from `y`; `rate(node, y)` is the right-hand side at kStepNodes[node] of the step.
+/// One step of size `h` from `y`; `rate(node, y)` is the right-hand side at kStepNodes[node] of the step. Flattened: left to themselves,
+/// compilers call each of the small sums and products of dual numbers, which takes three times as long (docs/performance.md).
 template <class T, class Rate>
-LawState<T> butcher6_step(const Rate& rate, double h, const LawState<T>& y) {
+[[gnu::flatten]] LawState<T> butcher6_step(const Rate& rate, double h, const LawState<T>& y) {
   static constexpr std::array<std::array<double, 7>, 7> a{{{},
                                                            {1. / 3},
                                                            {0, 2. / 3},
