@@ -81,10 +81,15 @@ std::string text_of(const PlanSettings& s) {
 std::string text_of(const TargetRound& round) {
   std::string text = fmt::format("{} rung:", to_string(round.known.rung));
   for (const ExpectedError& e : round.errors) {
+    if (std::isnan(e.half_width)) {
+      text += fmt::format(" {} has no band", e.quantity);
+      continue;
+    }
     const QuantityPrecision* p = find(round.known, e.quantity);
-    text += fmt::format(" {} {:.2f} % (band {:.2f}, rate {:.2f}, step {:.2f}, size {:.2f}; law off by {:.2f})",
-                        e.quantity, 100 * e.total(), 100 * e.half_width, 100 * e.biases[0], 100 * e.biases[1],
-                        100 * e.biases[2], p == nullptr ? std::nan("") : 100 * p->discrepancy);
+    text += fmt::format(" {} {:.2f} % (band {:.2f}, rate {:.2f}, step {:.2f}, size {:.2f}", e.quantity, 100 * e.total(),
+                        100 * e.half_width, 100 * e.biases[0], 100 * e.biases[1], 100 * e.biases[2]);
+    if (p != nullptr && std::isfinite(p->discrepancy)) text += fmt::format("; law off by {:.2f}", 100 * p->discrepancy);
+    text += ")";
   }
   return text;
 }

@@ -132,6 +132,8 @@ TEST(TargetRun, GivesUpWithoutABand) {
   const TargetRun run = world.reach(0.1);
   EXPECT_EQ(run.outcome, TargetOutcome::no_band);
   EXPECT_EQ(world.calls.size(), 3u);
+  EXPECT_NE(world.log.find("P_star has no band"), std::string::npos) << world.log;
+  EXPECT_EQ(world.log.find("nan"), std::string::npos) << world.log;
 }
 
 }  // namespace
