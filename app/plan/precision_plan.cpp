@@ -33,6 +33,16 @@ int finished_packings(const PlanSettings& settings, const std::vector<PlanSettin
   return packings;
 }
 
+/// Fewest packings with twice the spheres of each round that said nothing although it sheared as far, at as many densities.
+int packings_for_a_band(const PlanSettings& settings, const std::vector<PlanSettings>& without_band) {
+  std::int64_t spheres = 0;
+  for (const PlanSettings& round : without_band) {
+    if (settings.shear_strain > round.shear_strain || settings.densities > round.densities) continue;
+    spheres = std::max(spheres, 2 * round.packings * round.particles);
+  }
+  return static_cast<int>((spheres + settings.particles - 1) / settings.particles);
+}
+
 double seconds_for(const PlanSettings& settings, const Work& work, const CostRates& rates,
                    const std::vector<PlanSettings>& finished) {
   const int missing = std::max(0, settings.packings - finished_packings(settings, finished));
@@ -134,7 +144,8 @@ std::optional<Candidate> candidate(const PlanSettings& settings, const Work& wor
     s.packings = packings;
     return candidate_with(s, work, findings, goal);
   };
-  const int first = std::max(kLeastPackings, finished_packings(settings, goal.finished) + 1);
+  const int first = std::max({kLeastPackings, finished_packings(settings, goal.finished) + 1,
+                              packings_for_a_band(settings, goal.without_band)});
   const auto too_long = [&](int n) {
     PlanSettings s = settings;
     s.packings = n;

@@ -119,6 +119,7 @@ struct PlanGoal {
   std::vector<PlanSettings> finished;  ///< of all rounds
   double error_now = 0;                ///< that the last one reached [-]
   int max_packings = 1000;
+  std::vector<PlanSettings> without_band{};  ///< of the rounds that say nothing
 };
 
 /// What is expected of exactly these settings.
@@ -126,7 +127,8 @@ Candidate candidate_with(const PlanSettings& settings, const Work& work, const P
                          const PlanGoal& goal);
 
 /// `settings` with the smallest number of packings that reaches the goal; where that takes too long or is out of reach, with
-/// as many as the seconds allow (without a limit: 3). No candidate without time for three, or for one more than finished.
+/// as many as the seconds allow (without a limit: the fewest). At least three, more than are finished, and twice the spheres of
+/// a round without a band that sheared as far at as many densities; no candidate without time for them.
 std::optional<Candidate> candidate(const PlanSettings& settings, const Work& work, const PlanFindings& findings,
                                    const PlanGoal& goal);
 

@@ -40,6 +40,12 @@ std::vector<double> half_widths(const TargetRound& round) {
   return widths;
 }
 
+/// The last round that knows something; if none does, the last.
+const TargetRound& last_with_band(const std::vector<TargetRound>& rounds) {
+  const auto known = std::find_if(rounds.rbegin(), rounds.rend(), [](const auto& r) { return !std::isnan(r.error); });
+  return known == rounds.rend() ? rounds.back() : *known;
+}
+
 /// Whether the law is off by more than the target: for sure, or, once the error is reached, as far as is known.
 bool is_discrepant(const TargetRound& round, double target) {
   return std::any_of(round.errors.begin(), round.errors.end(), [&](const ExpectedError& error) {
@@ -124,11 +130,14 @@ TargetRun reach(const PrecisionTarget& target, const PlanSettings& pilot, const 
     without_band = std::isnan(last.error) ? without_band + 1 : 0;
     if (without_band == kRoundsWithoutBand) return ended(TargetOutcome::no_band);
 
-    const PlanFindings findings = rebased(run.pilot, last.settings, half_widths(last));
+    const TargetRound& known = last_with_band(run.rounds);
+    const PlanFindings findings = rebased(run.pilot, known.settings, half_widths(known));
     const double left = target.max_seconds > 0 ? target.max_seconds - actions.seconds() : kInfinity;
-    std::vector<PlanSettings> finished;
-    for (const TargetRound& round : run.rounds) finished.push_back(round.settings);
-    const PlanGoal goal{kAim * target.error, left, finished, std::isnan(last.error) ? kInfinity : last.error};
+    PlanGoal goal{kAim * target.error, left, {}, std::isnan(last.error) ? kInfinity : last.error};
+    for (const TargetRound& round : run.rounds) {
+      goal.finished.push_back(round.settings);
+      if (std::isnan(round.error)) goal.without_band.push_back(round.settings);
+    }
     std::vector<Candidate> candidates;
     for (const PlanSettings& settings : grid) {
       if (const auto c = candidate(settings, actions.work(settings), findings, goal)) candidates.push_back(*c);
@@ -139,7 +148,7 @@ TargetRun reach(const PrecisionTarget& target, const PlanSettings& pilot, const 
     const Candidate& plan = candidates[*chosen];
     actions.log(
         fmt::format("plan: {}: expected {:.2f} % in {:.0f} s", text_of(plan.settings), 100 * plan.error, plan.seconds));
-    const PlanSettings first = first_part(plan.settings, finished);
+    const PlanSettings first = first_part(plan.settings, goal.finished);
     if (first.packings < plan.settings.packings)
       actions.log(fmt::format("first {} of these packings, which will say more", first.packings));
     const Candidate next = candidate_with(first, plan.work, findings, goal);

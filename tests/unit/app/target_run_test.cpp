@@ -16,6 +16,7 @@ struct World {
   double rate_bias = 0;  ///< at rate 8
   double discrepancy = 0;
   double pilot_luck = 1;  ///< the pilot's band over what it should be
+  double blind = 0;       ///< later rounds of fewer spheres have no band
   double time = 0;
   std::vector<PlanSettings> calls;
   std::string log;
@@ -25,8 +26,10 @@ struct World {
     time += 0.01 * (s.packings - (more ? calls.back().packings : 0)) * static_cast<double>(s.particles) / s.strain_rate;
     const double luck = calls.empty() ? pilot_luck : 1;
     calls.push_back(s);
+    const bool no_band = calls.size() > 1 && s.packings * static_cast<double>(s.particles) < blind;
     const double h =
-        luck * width * student_95(s.packings - 1) / std::sqrt(s.packings * static_cast<double>(s.particles));
+        no_band ? std::nan("")
+                : luck * width * student_95(s.packings - 1) / std::sqrt(s.packings * static_cast<double>(s.particles));
     return {Rung::memory, {{"P_star", h, 2 * h, discrepancy, std::max(0.0, discrepancy - h)}, {"s_par", 9, 9, 9, 9}}};
   }
 
@@ -124,6 +127,24 @@ TEST(TargetRun, KeepsToItsTime) {
   World tiny;
   EXPECT_EQ(tiny.reach(0.001, 0.001).outcome, TargetOutcome::max_cost);
   EXPECT_EQ(tiny.calls.size(), 1u);
+}
+
+TEST(TargetRun, PlansByWhatItKnewBeforeARoundWithoutABand) {
+  World world;
+  const TargetRun seeing = world.reach(0.05);
+  ASSERT_EQ(seeing.rounds.size(), 2u);
+  const auto spheres = [](const TargetRound& round) {
+    return round.settings.packings * static_cast<double>(round.settings.particles);
+  };
+  world = {};
+  world.blind = spheres(seeing.rounds[1]) + 1;
+  const TargetRun run = world.reach(0.05);
+  EXPECT_EQ(run.outcome, TargetOutcome::met);
+  ASSERT_EQ(run.rounds.size(), 3u);
+  EXPECT_TRUE(std::isnan(run.rounds[1].error));
+  EXPECT_LE(run.rounds[2].expected_error, 0.05);  // by the pilot, not as if nothing were known
+  EXPECT_GE(spheres(run.rounds[2]), 2 * spheres(run.rounds[1]));
+  EXPECT_LT(spheres(run.rounds[2]), 3 * spheres(run.rounds[1]));
 }
 
 TEST(TargetRun, GivesUpWithoutABand) {
