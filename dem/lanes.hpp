@@ -64,7 +64,7 @@ inline constexpr float kNobodysRadius = -0x1p100F;
 
 // Neighbours are listed twice. The list of all within a wide skin lasts for long; of it those within narrow skins are
 // picked again and again, which costs two to three force passes, and only they are visited for forces. Each sphere has a narrow
-// skin of its own, by its speed: one in a hundred moves several times as far as the others. Neighbours are in the order of the
+// skin of its own, by its speed: a few in a thousand move several times as far as the others. Neighbours are in the order of the
 // State in both lists, so no force depends on when either was made, nor on the skins.
 
 /// The k-th neighbours of the sixteen spheres of a group: where their rows begin [bytes].

@@ -197,6 +197,7 @@ TYPED_TEST(LaneList, NearSkinsFollowSpeeds) {
     }
     EXPECT_NEAR(reach, farthest, 1e-5 * r_0);
     fmt::print("{}: {} least, {} most, {} held back by the list, {} as wanted\n", target, least, most, held, free);
+    EXPECT_GT(least, 0);
     EXPECT_GT(most, 0);
     EXPECT_GT(held, 0);
     EXPECT_GT(free, 0);
