@@ -82,6 +82,14 @@ ResidualBlock memory_block(const Trajectory& t, const LawParameters<double>& fix
   return block;
 }
 
+/// Whether none of the fabric may lag, 1 - kappa = 0 within the 95 % interval: then the rate lambda at which it follows need not be known.
+bool lag_may_be_none(const StageFit& fit) {
+  for (const auto& [name, kappa] : fit.stage.estimates) {
+    if (name == "memory.kappa") return kappa.value + kappa.half_width() >= 1;
+  }
+  return false;
+}
+
 std::string memory_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative "
@@ -125,13 +133,15 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
         },
         options.threads, fit);
     const auto field = fields(law);
+    const bool may_not_lag = lag_may_be_none(fit);
     for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
       const std::string& name = problem.parameters[k].name;
       const double value = fit.solution.x(static_cast<Eigen::Index>(k));
       *field[parameter_index(name)] = value;
       const double error = fit.stage.estimates[k].estimate.standard_error;
-      if (name != "memory.chi" && name != "memory.kappa" &&
-          error > kVagueParameter * std::abs(value))  // both may be none
+      const bool may_be_vague = name == "memory.chi" || name == "memory.kappa" ||  // both may be none
+                                (name == "memory.lambda" && may_not_lag);
+      if (!may_be_vague && error > kVagueParameter * std::abs(value))
         fit.mark_not_identified(
             name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
                       (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));

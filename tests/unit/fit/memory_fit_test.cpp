@@ -73,6 +73,23 @@ TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
   EXPECT_EQ(estimate(fit, "memory.k").status, Status::fitted);
 }
 
+// Where all of the fabric may follow stress at once, nobody asks at what rate the rest follows.
+TEST(MemoryFit, TheRateOfALagThatMayBeNoneNeedNotBeKnown) {
+  LawParameters<double> truth = memory_truth();
+  SyntheticOptions options = of_memory();
+  options.noise_s = options.noise_F = 0.01;
+  options.seeds = {1, 2, 3};
+  for (const double kappa : {0.6, 0.99}) {
+    truth.memory.kappa = kappa;
+    LawParameters<double> law = at_start();
+    const StageFit fit = fit_memory(memory_trajectories(testing::synthetic_dataset(truth, options)), law, {}, {});
+    const Estimate lambda = estimate(fit, "memory.lambda");
+    EXPECT_EQ(lambda.status, Status::fitted) << kappa << ": " << lambda.note;
+    const bool vague = lambda.standard_error > 0.5 * lambda.value;
+    EXPECT_EQ(vague, kappa > 0.9) << lambda.value << " +- " << lambda.standard_error;
+  }
+}
+
 // Weights 1/d_i of noisy data d_i favour the low ones: the level of a constant P comes out too low by twice the square of the
 // relative noise. One weight for all rows of a test has no such bias.
 TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {
