@@ -12,6 +12,9 @@ Figure density_figure(const ReportInput& input);
 /// Eq. (15), Eq. (13) and F_v = g3 nu C on isotropic unloading.
 Figure scaled_density_figure(const ReportInput& input);
 
+/// Figs. 1, 4 to 8 and 10 of the paper: every run that they show, ISO, UNI and D2 from both branches.
+Figure modes_figure(const ReportInput& input);
+
 /// s_par (Eq. 17) against eps_dev, a panel per density.
 Figure stress_ratio_figure(const ReportInput& input);
 /// F_par (Eq. 18) likewise.

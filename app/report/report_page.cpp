@@ -140,7 +140,8 @@ Page make_page(const ReportInput& input) {
   }
   page.sections.push_back({"state",
                            "Pressure, coordination and rattlers",
-                           {figure_html(density_figure(input)), figure_html(scaled_density_figure(input))}});
+                           {figure_html(density_figure(input)), figure_html(scaled_density_figure(input)),
+                            figure_html(modes_figure(input))}});
   page.sections.push_back({"shear",
                            "Stress ratio and fabric in shear",
                            {figure_html(stress_ratio_figure(input)), figure_html(fabric_figure(input))}});

@@ -90,11 +90,11 @@ int count(const std::string& text, const std::string& what) {
 TEST_F(ReportFolder, OnePageWithEveryFigureAndNothingFromOutside) {
   const std::string html = page();
   EXPECT_EQ(test::first_markup_error(html), "");
-  for (const char* id : {"density", "scaled", "stress-ratio", "fabric", "shear-laws", "residuals", "prediction-1",
-                         "prediction-2", "quality-isotropic", "quality-shear"}) {
+  for (const char* id : {"density", "scaled", "modes", "stress-ratio", "fabric", "shear-laws", "residuals",
+                         "prediction-1", "prediction-2", "quality-isotropic", "quality-shear"}) {
     EXPECT_EQ(count(html, "<figure id=\"" + std::string(id) + "\">"), 1) << id;
   }
-  EXPECT_EQ(count(html, "<svg "), 10);
+  EXPECT_EQ(count(html, "<svg "), 11);
   for (const char* outside : {" src=", "@import", "<link", "<iframe", "<img", "url(http", "href=\"http"}) {
     EXPECT_EQ(count(html, outside), 0) << outside;
   }
