@@ -16,6 +16,7 @@ Series point_of(const SettingResult& r, std::size_t number) {
   series.label = plain(r.outcome.name);
   series.x = {r.outcome.cost.particle_steps};
   series.y = {r.reached};
+  series.y_error = {r.reached_error};
   series.marker = kMarkers[number % kMarkers.size()];
   series.open_marker = number / kMarkers.size() % 2 == 1;
   series.marker_size = 4;
@@ -61,10 +62,11 @@ Figure figure_of(const SettingsStudy& study) {
   Figure figure;
   figure.id = "settings";
   figure.title = "Error of settings against their cost";
-  figure.description =
-      "Error reached over particle-steps. " + study.error +
-      ". Shaded: what sampling alone makes; star: the default; grey: dominated by a cheaper setting that is "
-      "not worse, or so near the energy balance's stop that other data sets would not be finished";
+  figure.description = "Error reached over particle-steps. " + study.error +
+                       ". Bars: one standard error by the packings. Shaded: what sampling alone makes; star: the "
+                       "default; grey: dominated by a "
+                       "cheaper setting that is better beyond chance, or so near the energy balance's stop that other "
+                       "data sets would not be finished";
   figure.panel_height = 380;
   std::vector<const SettingResult*> by_cost;
   for (std::size_t i = study.judged; i < study.results.size(); ++i) by_cost.push_back(&study.results[i]);

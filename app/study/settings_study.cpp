@@ -5,6 +5,7 @@
 #include <set>
 
 #include "dem/element_test.hpp"
+#include "model/student.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -29,7 +30,7 @@ bool scatters_alike(const SettingResult& a, const SettingResult& b) {
 
 /// All but noise and reached, for which it takes the other settings.
 SettingResult compare_setting(const SettingOutcome& setting, const SettingOutcome& reference) {
-  SettingResult result{setting, {}, kMissing, kMissing, kMissing, kMissing, kMissing, {}};
+  SettingResult result{setting, {}, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, {}, {}};
   double errors = 0, floors = 0, samplings = 0;
   int counted = 0;
   const bool paired = !setting.compared_with.empty();
@@ -63,6 +64,17 @@ double pooled_sampling(const SettingResult& one, const std::vector<SettingResult
   return count > 0 ? std::sqrt(squares / count) : kMissing;
 }
 
+/// All settings beside the first.
+std::vector<SettingResult> compared(const std::vector<SettingOutcome>& outcomes, Packings packings) {
+  std::vector<SettingResult> results;
+  for (const SettingOutcome& outcome : outcomes) results.push_back(compare_setting(outcome, outcomes.front()));
+  for (SettingResult& r : results) {
+    r.noise = packings == Packings::given ? r.floor : pooled_sampling(r, results);
+    r.reached = std::hypot(std::sqrt(std::max(r.error * r.error - r.floor * r.floor, 0.0)), r.noise);
+  }
+  return results;
+}
+
 /// Whether `other` shows every quantity that `one` shows; an error over fewer of them would be no better one.
 bool shows_as_much(const SettingResult& other, const SettingResult& one) {
   for (std::size_t q = 0; q < one.errors.size(); ++q) {
@@ -77,14 +89,79 @@ bool less_safe(const SettingResult& other, const SettingResult& one) {
   return near_the_stop(other.outcome.energy_residual) && !near_the_stop(one.outcome.energy_residual);
 }
 
-void find_dominated(std::vector<SettingResult>& results, std::size_t first) {
-  for (std::size_t i = first; i < results.size(); ++i) {
+/// All settings with one packing left out of those that have it.
+struct LeftOut {
+  std::uint64_t seed = 0;
+  std::vector<SettingResult> results;
+};
+
+/// reached^2 before it is kept above the noise^2: what an error below its floor says of the setting is chance, too.
+double unbounded_square(const SettingResult& r) { return r.error * r.error - r.floor * r.floor + r.noise * r.noise; }
+
+/// From values with each of n packings left out in turn.
+struct Jackknife {
+  double error = kMissing;  ///< standard error; NaN for fewer than three
+  double degrees_of_freedom = kMissing;
+};
+
+Jackknife jackknife(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  if (values.size() < 3) return {};
+  double mean = 0, squares = 0;
+  for (const double value : values) mean += value / n;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return {std::sqrt(squares * (n - 1) / n), n - 1};
+}
+
+bool has(const SettingOutcome& outcome, std::uint64_t seed) {
+  return std::find(outcome.seeds.begin(), outcome.seeds.end(), seed) != outcome.seeds.end();
+}
+
+SettingOutcome without(SettingOutcome outcome, std::uint64_t seed) {
+  const auto found = std::find(outcome.seeds.begin(), outcome.seeds.end(), seed);
+  if (found == outcome.seeds.end()) return outcome;
+  const auto column = std::distance(outcome.seeds.begin(), found);
+  for (auto* quantities : {&outcome.quantities, &outcome.compared_with}) {
+    for (StudyQuantity& quantity : *quantities) quantity = without_packing(quantity, column);
+  }
+  if (outcome.seeds.size() >= 3) outcome.seeds.erase(found);  // of fewer nothing is left to be shown
+  return outcome;
+}
+
+/// Of unbounded_square() of setting `one` minus that of setting `other`, over the packings that one of them has.
+Jackknife difference_of_squares(const std::vector<SettingResult>& results, std::size_t one, std::size_t other,
+                                const std::vector<LeftOut>& left_out) {
+  std::vector<double> differences;
+  for (const LeftOut& left : left_out) {
+    if (has(results[one].outcome, left.seed) || has(results[other].outcome, left.seed))
+      differences.push_back(unbounded_square(left.results[one]) - unbounded_square(left.results[other]));
+  }
+  return jackknife(differences);
+}
+
+/// Whether `one` is worse than `other` beyond what chance does to one of `rivals` comparisons in twenty.
+bool beyond_chance(const std::vector<SettingResult>& results, std::size_t one, std::size_t other, std::size_t rivals,
+                   const std::vector<LeftOut>& left_out) {
+  const Jackknife chance = difference_of_squares(results, one, other, left_out);
+  if (!std::isfinite(chance.error)) return false;
+  const double t = student_quantile(1 - 0.025 / static_cast<double>(rivals), chance.degrees_of_freedom);
+  return unbounded_square(results[one]) - unbounded_square(results[other]) >= t * chance.error;
+}
+
+void find_dominated(SettingsStudy& study, const std::vector<LeftOut>& left_out) {
+  std::vector<SettingResult>& results = study.results;
+  for (std::size_t i = study.judged; i < results.size(); ++i) {
     SettingResult& one = results[i];
-    for (std::size_t j = first; j < results.size(); ++j) {
-      const SettingResult& other = results[j];
-      if (other.outcome.cost.particle_steps < one.outcome.cost.particle_steps && other.reached <= one.reached &&
-          shows_as_much(other, one) && !less_safe(other, one))
-        one.dominated_by.push_back(other.outcome.name);
+    std::vector<std::size_t> cheaper;
+    for (std::size_t j = study.judged; j < results.size(); ++j) {
+      if (results[j].outcome.cost.particle_steps < one.outcome.cost.particle_steps && shows_as_much(results[j], one) &&
+          !less_safe(results[j], one))
+        cheaper.push_back(j);
+    }
+    for (const std::size_t j : cheaper) {
+      if (!(results[j].reached <= one.reached)) continue;
+      (beyond_chance(results, i, j, cheaper.size(), left_out) ? one.dominated_by : one.perhaps_dominated_by)
+          .push_back(results[j].outcome.name);
     }
   }
 }
@@ -126,13 +203,23 @@ std::vector<std::uint64_t> packings_of(const Dataset& dataset) {
 
 SettingsStudy study_of(const std::string& kind, const std::string& error, Packings packings, const Json& base,
                        const std::vector<SettingOutcome>& outcomes, std::size_t judged) {
-  SettingsStudy study{kind, error, packings, base, judged, {}};
-  for (const SettingOutcome& outcome : outcomes) study.results.push_back(compare_setting(outcome, outcomes.front()));
-  for (SettingResult& r : study.results) {
-    r.noise = packings == Packings::given ? r.floor : pooled_sampling(r, study.results);
-    r.reached = std::hypot(std::sqrt(std::max(r.error * r.error - r.floor * r.floor, 0.0)), r.noise);
+  SettingsStudy study{kind, error, packings, base, judged, compared(outcomes, packings)};
+  std::set<std::uint64_t> seeds;
+  for (const SettingOutcome& outcome : outcomes) seeds.insert(outcome.seeds.begin(), outcome.seeds.end());
+  std::vector<LeftOut> left_out;
+  for (const std::uint64_t seed : seeds) {
+    std::vector<SettingOutcome> rest;
+    for (const SettingOutcome& outcome : outcomes) rest.push_back(without(outcome, seed));
+    left_out.push_back({seed, compared(rest, packings)});
   }
-  find_dominated(study.results, judged);
+  for (std::size_t i = 0; i < study.results.size(); ++i) {
+    std::vector<double> reached;
+    for (const LeftOut& left : left_out) {
+      if (has(outcomes[i], left.seed)) reached.push_back(left.results[i].reached);
+    }
+    study.results[i].reached_error = jackknife(reached).error;
+  }
+  find_dominated(study, left_out);
   return study;
 }
 

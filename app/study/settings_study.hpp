@@ -9,6 +9,10 @@
 // lest a setting dominate by a scatter that happens to come out small. A setting whose energy residual comes nearer than half to the
 // one that stops a run dominates none that keeps away: its next data set may not be finished. Costs are counted in particle-steps;
 // seconds are beside them.
+// What is reached is known as well as a few packings tell. A cheaper setting dominates where its reached^2 is less beyond chance: by t
+// jackknife errors of the difference, each packing left out in turn of all settings that have it, t for one in twenty verdicts on a
+// setting however many are cheaper; the squares are those before max(), or chance below the floor would count as none. Where it is
+// less but not beyond chance, it perhaps dominates.
 
 #include <cstdint>
 #include <string>
@@ -60,7 +64,9 @@ struct SettingResult {
   SettingOutcome outcome;
   std::vector<QuantityError> errors;                                  ///< the reference's quantities
   double error = 0, floor = 0, sampling = 0, noise = 0, reached = 0;  ///< NaN where it shows none of them [-]
-  std::vector<std::string> dominated_by;                              ///< settings that cost less and reach as much
+  double reached_error = 0;                       ///< of `reached`, by the jackknife; NaN with fewer than three packings [-]
+  std::vector<std::string> dominated_by;          ///< settings that cost less and reach less, beyond chance
+  std::vector<std::string> perhaps_dominated_by;  ///< that cost less and reach as much or less, by what may be chance
 };
 
 struct SettingsStudy {

@@ -32,8 +32,10 @@ OrderedJson result_to_json(const SettingResult& r) {
   object["sampling"] = number_or_null(r.sampling);
   object["noise"] = number_or_null(r.noise);
   object["reached"] = number_or_null(r.reached);
+  object["reached_standard_error"] = number_or_null(r.reached_error);
   object["dominated"] = !r.dominated_by.empty();
   object["dominated_by"] = r.dominated_by;
+  object["perhaps_dominated_by"] = r.perhaps_dominated_by;
   object["note"] = outcome.note;
   OrderedJson& quantities = object["quantities"] = OrderedJson::array();
   for (const QuantityError& e : r.errors) quantities.push_back(quantity_to_json(e));
@@ -50,7 +52,8 @@ OrderedJson study_to_json(const SettingsStudy& study) {
   const SettingResult& judged = study.results.at(study.judged);
   document["default"] = {{"setting", judged.outcome.name},
                          {"dominated", !judged.dominated_by.empty()},
-                         {"dominated_by", judged.dominated_by}};
+                         {"dominated_by", judged.dominated_by},
+                         {"perhaps_dominated_by", judged.perhaps_dominated_by}};
   OrderedJson& all = document["settings"] = OrderedJson::array();
   for (const SettingResult& r : study.results) all.push_back(result_to_json(r));
   return document;

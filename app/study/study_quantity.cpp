@@ -40,6 +40,25 @@ Eigen::MatrixXd difference(const Eigen::MatrixXd& ours, const std::vector<std::u
 
 }  // namespace
 
+StudyQuantity without_packing(const StudyQuantity& quantity, Eigen::Index c) {
+  StudyQuantity rest = quantity;
+  const Eigen::Index columns = quantity.influence.cols();
+  if (columns < 3) {
+    rest.values.setConstant(kMissing);
+    return rest;
+  }
+  const auto n = static_cast<double>(columns);
+  const Eigen::VectorXd moved = quantity.influence.col(c) * std::sqrt(n / (n - 1));
+  rest.values -= moved;
+  rest.influence.resize(Eigen::NoChange, columns - 1);
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    if (k != c)
+      rest.influence.col(k < c ? k : k - 1) =
+          (quantity.influence.col(k) * std::sqrt(n * (n - 1)) + moved) / std::sqrt((n - 1) * (n - 2));
+  }
+  return rest;
+}
+
 QuantityError compare(const StudyQuantity& ours, const std::vector<std::uint64_t>& seeds,
                       const StudyQuantity& reference, const std::vector<std::uint64_t>& reference_seeds) {
   QuantityError e{reference.name, reference.in_error, kMissing, kMissing, kMissing, kMissing, kMissing};

@@ -32,6 +32,11 @@ struct QuantityError {
   double sampling = 0;        ///< half width of the 95 % interval of the values themselves, relative as `error` [-]
 };
 
+/// The same without the packing of column `c`, to first order (exactly where a value is the mean of the packings); not shown with
+/// fewer than three:
+///   x' = x - psi_c sqrt(n/(n - 1)),   psi_k' = (psi_k sqrt(n (n - 1)) + psi_c sqrt(n/(n - 1)))/sqrt((n - 1)(n - 2))
+StudyQuantity without_packing(const StudyQuantity& quantity, Eigen::Index c);
+
 /// Seeds in the order of the columns of `influence`.
 QuantityError compare(const StudyQuantity& ours, const std::vector<std::uint64_t>& seeds,
                       const StudyQuantity& reference, const std::vector<std::uint64_t>& reference_seeds);

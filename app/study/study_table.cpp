@@ -16,10 +16,10 @@ std::string percent(double share) { return std::isfinite(share) ? fmt::format("{
 
 std::string line_of(const SettingResult& r, std::size_t width) {
   const SettingOutcome& o = r.outcome;
-  std::string text =
-      fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8} {:>8}", o.name, width,
-                  o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds, percent(r.error),
-                  percent(r.floor), percent(r.sampling), percent(r.reached), percent(o.energy_residual));
+  std::string text = fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}", o.name,
+                                 width, o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds,
+                                 percent(r.error), percent(r.floor), percent(r.sampling), percent(r.reached),
+                                 percent(r.reached_error), percent(o.energy_residual));
   if (near_the_stop(o.energy_residual)) text += "  near the energy balance's stop";
   if (!r.dominated_by.empty()) text += "  dominated";
   if (!o.model.empty()) text += "  " + o.model;
@@ -29,8 +29,14 @@ std::string line_of(const SettingResult& r, std::size_t width) {
 
 std::string verdict_of(const SettingResult& judged) {
   if (!std::isfinite(judged.reached)) return fmt::format("{} shows nothing to be judged by\n", judged.outcome.name);
-  if (judged.dominated_by.empty()) return fmt::format("{} is not dominated\n", judged.outcome.name);
-  return fmt::format("{} is dominated by {}\n", judged.outcome.name, fmt::join(judged.dominated_by, ", "));
+  std::string text = judged.outcome.name;
+  text += judged.dominated_by.empty() ? " is not dominated"
+                                      : fmt::format(" is dominated by {}", fmt::join(judged.dominated_by, ", "));
+  if (!judged.perhaps_dominated_by.empty())
+    text += fmt::format("; cheaper and as good or better, but no more than by chance: {}",
+                        fmt::join(judged.perhaps_dominated_by, ", "));
+  text += "\n";
+  return text;
 }
 
 }  // namespace
@@ -39,8 +45,8 @@ std::string study_table(const SettingsStudy& study) {
   std::size_t width = 7;
   for (const SettingResult& r : study.results) width = std::max(width, r.outcome.name.size());
   std::string text =
-      fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
-                  "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached", "energy");
+      fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
+                  "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached", "+-", "energy");
   for (const SettingResult& r : study.results) text += line_of(r, width);
   return text + verdict_of(study.results.at(study.judged));
 }

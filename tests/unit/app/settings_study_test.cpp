@@ -62,7 +62,7 @@ TEST(SettingsStudy, SettingsThatOnlyComputeOtherwiseShareTheirSampling) {
 }
 
 TEST(SettingsStudy, ADefaultIsDominatedByWhatIsCheaperAndNotWorse) {
-  const std::vector<std::uint64_t> seeds{1, 2};
+  const std::vector<std::uint64_t> seeds{1, 2, 3};
   const auto study = [&](const SettingOutcome& other) {
     return study_of("dem", "", Packings::given, {},
                     {outcome("reference", 9, 0, 0, seeds), outcome("base", 4, 0.02, 0.01, seeds), other}, 1);
@@ -91,7 +91,7 @@ TEST(SettingsStudy, ComparesWithTheReferenceByTheSamePackings) {
 }
 
 TEST(SettingsStudy, WhatMayBeStoppedDominatesNothingThatIsSafe) {
-  const std::vector<std::uint64_t> seeds{1, 2};
+  const std::vector<std::uint64_t> seeds{1, 2, 3};
   const double stop = dem::ElementTestOptions().stop_energy_residual;
   const auto dominates = [&](double of_base, double of_other) {
     SettingOutcome base = outcome("base", 4, 0.02, 0.01, seeds), other = outcome("other", 3, 0.01, 0.01, seeds);
@@ -115,6 +115,64 @@ TEST(SettingsStudy, WhatShowsLessDominatesNothing) {
   EXPECT_TRUE(study.results[1].dominated_by.empty());
   half.quantities.clear();
   EXPECT_TRUE(std::isnan(study_of("dem", "", Packings::given, {}, {reference, half}, 1).results[1].reached));
+}
+
+/// One number, the mean of what each packing shows.
+SettingOutcome of_packings(const std::string& name, double cost, const Eigen::RowVectorXd& x,
+                           const std::vector<std::uint64_t>& seeds) {
+  const auto n = static_cast<double>(x.size());
+  const Eigen::MatrixXd psi = (x.array() - x.mean()).matrix() / std::sqrt(n * (n - 1));
+  return {name, {}, {cost, 0, 0}, seeds, {{"a", Eigen::VectorXd::Constant(1, x.mean()), psi, true}}, {}, 0, "", ""};
+}
+
+TEST(SettingsStudy, LeavingAPackingOutIsExactForMeans) {
+  const Eigen::RowVectorXd x{{1.02, 0.97, 1.05, 0.99}}, rest{{1.02, 0.97, 0.99}};
+  const StudyQuantity all = of_packings("", 0, x, {1, 2, 3, 4}).quantities.front(),
+                      expected = of_packings("", 0, rest, {1, 2, 4}).quantities.front(),
+                      found = without_packing(all, 2);
+  EXPECT_NEAR(found.values(0), expected.values(0), 1e-15);
+  ASSERT_EQ(found.influence.cols(), 3);
+  EXPECT_LT((found.influence - expected.influence).norm(), 1e-15);
+  const StudyQuantity two = of_packings("", 0, rest.head(2), {1, 2}).quantities.front();
+  EXPECT_TRUE(std::isnan(without_packing(two, 0).values(0))) << "one packing knows no scatter";
+}
+
+// The default is off by 2 %, the cheaper one by 1 %: with packings that agree on it that is so, with others it is a toss.
+TEST(SettingsStudy, ADifferenceWithinChanceIsNoDomination) {
+  const std::vector<std::uint64_t> seeds{1, 2, 3, 4};
+  const Eigen::RowVectorXd reference = Eigen::RowVectorXd::Ones(4), scatter{{1, -1, 0.5, -0.5}};
+  using Names = std::vector<std::string>;
+  for (const double size : {0.0005, 0.02}) {
+    const Eigen::RowVectorXd base = reference * 1.02 + size * scatter, cheap = reference * 1.01 - size * scatter;
+    const SettingsStudy study = study_of("dem", "", Packings::given, {},
+                                         {of_packings("reference", 9, reference, seeds),
+                                          of_packings("base", 4, base, seeds), of_packings("cheap", 3, cheap, seeds)},
+                                         1);
+    const SettingResult& judged = study.results[1];
+    EXPECT_EQ(judged.dominated_by, size < 0.01 ? Names{"cheap"} : Names{}) << size;
+    EXPECT_EQ(judged.perhaps_dominated_by, size < 0.01 ? Names{} : Names{"cheap"}) << size;
+    // the jackknife of sqrt(d^2 - s^2 + s^2) = |d|, of which d is a mean
+    const double s = std::sqrt((size * scatter).squaredNorm() / 12);
+    EXPECT_NEAR(judged.reached_error, s, size < 0.01 ? 1e-12 : 0.2 * s) << size;
+  }
+  // An error below its floor says nothing: a coarser step with the same packings, off by nothing on the average, is no better than the
+  // reference's own settings, whose error is none by definition.
+  SettingOutcome base = of_packings("base", 4, reference + 0.02 * scatter, seeds),
+                 coarse = of_packings("coarse", 3, reference + 0.02 * scatter.reverse(), seeds);
+  coarse.changes = {{"time_step_fraction", 0.2}};
+  SettingOutcome whole = base;
+  whole.name = "reference";
+  const SettingResult same = study_of("chain", "", Packings::chosen, {}, {whole, base, coarse}, 1).results[1];
+  EXPECT_EQ(same.dominated_by, Names{});
+  EXPECT_EQ(same.perhaps_dominated_by, Names{"coarse"});
+  // two packings do not know
+  const SettingsStudy few = study_of(
+      "dem", "", Packings::given, {},
+      {of_packings("reference", 9, reference.head(2), {1, 2}), of_packings("base", 4, reference.head(2) * 1.02, {1, 2}),
+       of_packings("cheap", 3, reference.head(2) * 1.01, {1, 2})},
+      1);
+  EXPECT_EQ(few.results[1].perhaps_dominated_by, Names{"cheap"});
+  EXPECT_TRUE(std::isnan(few.results[1].reached_error));
 }
 
 TEST(SettingsStudy, RunsAreCountedOnceAndCalibrationTestsOnly) {

@@ -13,9 +13,9 @@ namespace grainlaw::app {
 namespace {
 
 SettingOutcome outcome(const std::string& name, double cost, double value) {
-  const Eigen::MatrixXd psi = Eigen::MatrixXd::Constant(1, 2, 0.005);
+  const Eigen::MatrixXd psi = Eigen::MatrixXd::Constant(1, 3, 0.005);
   const StudyQuantity s_par{"s_par", Eigen::VectorXd::Constant(1, value), psi, true};
-  return {name, {{"rows", 20}}, {cost, 1, 2}, {1, 2}, {s_par}, {}, 0.001, "memory", "a note"};
+  return {name, {{"rows", 20}}, {cost, 1, 2}, {1, 2, 3}, {s_par}, {}, 0.001, "memory", "a note"};
 }
 
 SettingsStudy study(double cheap) {
@@ -32,6 +32,8 @@ TEST(StudyFiles, FollowTheSchema) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(document["settings"][2]["dominated_by"].get<Names>(), (Names{"base", "cheap"}));
   EXPECT_EQ(study_to_json(study(1))["default"]["dominated_by"].get<Names>(), Names{"cheap"});
+  EXPECT_TRUE(document["settings"][2]["perhaps_dominated_by"].empty());
+  EXPECT_TRUE(document["settings"][2]["reached_standard_error"].is_number());
   document["settings"][0].erase("sampling");
   EXPECT_THROW(check_schema(Json(document), Schema::study_settings, "study.json"), std::exception);
 }
@@ -70,7 +72,7 @@ TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
   const Series& shade = free.series.front();
   ASSERT_EQ(shade.bands.size(), 1u);
   for (std::size_t i = 0; i < shade.x.size(); ++i)
-    EXPECT_NEAR(shade.y[i] + shade.bands[0][i], student_95(1) * 0.005 * std::sqrt(2.0), 1e-12);
+    EXPECT_NEAR(shade.y[i] + shade.bands[0][i], student_95(2) * 0.005 * std::sqrt(3.0), 1e-12);
   EXPECT_NE(render_svg(figure_of(study(1.1))).svg.find("class=\"band\""), std::string::npos);
 }
 
