@@ -8,6 +8,8 @@
 namespace grainlaw::app {
 namespace {
 
+constexpr double kLeastPackings = 2;
+
 struct OnePacking {
   std::vector<std::string> names;
   std::vector<double> values;  ///< NaN where the packing does not show it [-]
@@ -47,6 +49,19 @@ OnePacking quantities_of(const Dataset& dataset, std::uint64_t seed) {
   return result;
 }
 
+/// Mean of the packings that show it; not shown by fewer than kLeastPackings.
+StudyQuantity mean_of(const std::string& name, const Eigen::RowVectorXd& x) {
+  const Eigen::Array<bool, 1, Eigen::Dynamic> shown = x.array().isFinite();
+  const auto n = static_cast<double>(shown.count());
+  StudyQuantity quantity{name, Eigen::VectorXd::Constant(1, kMissing), Eigen::MatrixXd::Zero(1, x.size()),
+                         name != "nu_c"};
+  if (n < kLeastPackings) return quantity;
+  const Eigen::RowVectorXd counted = shown.select(x.array(), 0.0).matrix();
+  quantity.values(0) = counted.sum() / n;
+  quantity.influence = shown.select((x.array() - quantity.values(0)) / std::sqrt(n * (n - 1)), 0.0).matrix();
+  return quantity;
+}
+
 }  // namespace
 
 std::vector<StudyQuantity> packing_quantities(const Dataset& dataset, const std::vector<std::uint64_t>& seeds) {
@@ -57,9 +72,7 @@ std::vector<StudyQuantity> packing_quantities(const Dataset& dataset, const std:
   for (std::size_t q = 0; q < packings.front().names.size(); ++q) {
     Eigen::RowVectorXd x(n);
     for (Eigen::Index c = 0; c < n; ++c) x(c) = packings[static_cast<std::size_t>(c)].values.at(q);
-    const std::string& name = packings.front().names[q];
-    quantities.push_back({name, Eigen::VectorXd::Constant(1, x.mean()),
-                          (x.array() - x.mean()) / std::sqrt(static_cast<double>(n * (n - 1))), name != "nu_c"});
+    quantities.push_back(mean_of(packings.front().names[q], x));
   }
   return quantities;
 }

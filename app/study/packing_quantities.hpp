@@ -1,7 +1,8 @@
 #pragma once
 // What each packing by itself says of the law, without a fit to all of them: P_star@nu and C_star@nu (Eqs. 11, 14), s_max@nu,
-// beta_s@nu, F_max@nu, beta_F@nu (Eqs. 17, 18), and nu_c (Eq. 14). The value of n packings is their mean; packing c moved it
-// by (x_c - mean)/sqrt(n (n - 1)).
+// beta_s@nu, F_max@nu, beta_F@nu (Eqs. 17, 18), and nu_c (Eq. 14). The value is the mean of the n packings that show it, two at
+// least (a run of a small packing may not show where it saturates); packing c moved it by (x_c - mean)/sqrt(n (n - 1)), by nothing if
+// it does not show it.
 
 #include "app/files/dataset.hpp"
 #include "app/study/study_quantity.hpp"

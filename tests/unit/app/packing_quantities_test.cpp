@@ -26,5 +26,23 @@ TEST(PackingQuantities, AreMeansOfPackingsByThemselves) {
   }
 }
 
+TEST(PackingQuantities, APackingThatDoesNotShowItIsLeftOut) {
+  Dataset dataset = testing::study_dataset(1.1, 0.02);
+  for (DatasetTest& test : dataset.tests) {
+    if (test.record.packing.seed == 3 && is_pure_shear(test.record))
+      std::erase_if(test.record.rows, [](const Observation& row) { return row.eps_dev > 0.05; });
+  }
+  const auto published = packing_quantities(testing::study_dataset(1, 0), {1, 2, 3});
+  const auto three = packing_quantities(dataset, {1, 2, 3}), two = packing_quantities(dataset, {1, 3});
+  for (std::size_t q = 0; q < three.size(); ++q) {
+    if (!three[q].name.starts_with("F_max")) continue;
+    const double value = published[q].values(0);
+    EXPECT_NEAR(three[q].values(0) / value, 1.1 * 0.99, 2e-3) << three[q].name << " of packings .98 and 1";
+    EXPECT_EQ(three[q].influence(0, 2), 0);
+    EXPECT_NEAR(three[q].influence.norm() / value, 1.1 * 0.01, 1e-3);
+    EXPECT_TRUE(std::isnan(two[q].values(0))) << "one packing has no scatter";
+  }
+}
+
 }  // namespace
 }  // namespace grainlaw::app
