@@ -144,8 +144,11 @@ bool beyond_chance(const std::vector<SettingResult>& results, std::size_t one, s
                    const std::vector<LeftOut>& left_out) {
   const Jackknife chance = difference_of_squares(results, one, other, left_out);
   if (!std::isfinite(chance.error)) return false;
+  // Near zero a squared error is no linear function of the packings; by chance alone it has the variance 2 floor^4, at most.
+  const double squares = std::pow(results[one].floor, 4) + std::pow(results[other].floor, 4);
+  const double error = std::sqrt(chance.error * chance.error + 2 * squares);
   const double t = student_quantile(1 - 0.025 / static_cast<double>(rivals), chance.degrees_of_freedom);
-  return unbounded_square(results[one]) - unbounded_square(results[other]) >= t * chance.error;
+  return unbounded_square(results[one]) - unbounded_square(results[other]) >= t * error;
 }
 
 void find_dominated(SettingsStudy& study, const std::vector<LeftOut>& left_out) {

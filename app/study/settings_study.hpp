@@ -10,9 +10,9 @@
 // one that stops a run dominates none that keeps away: its next data set may not be finished. Costs are counted in particle-steps;
 // seconds are beside them.
 // What is reached is known as well as a few packings tell. A cheaper setting dominates where its reached^2 is less beyond chance: by t
-// jackknife errors of the difference, each packing left out in turn of all settings that have it, t for one in twenty verdicts on a
-// setting however many are cheaper; the squares are those before max(), or chance below the floor would count as none. Where it is
-// less but not beyond chance, it perhaps dominates.
+// errors of the difference, t for one in twenty verdicts on a setting however many are cheaper. That error is the jackknife's, each
+// packing left out in turn of all settings that have it, and 2 floor^4 of both; the squares are those before max(), or chance below
+// the floor would count as none. Where it is less but not beyond chance, it perhaps dominates.
 
 #include <cstdint>
 #include <string>
