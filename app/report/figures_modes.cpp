@@ -40,7 +40,7 @@ bool is_uniaxial_cycle(const TestRecord& test) {
          std::all_of(segments.begin(), segments.end(), [](const PathSegment& s) { return s.mode == Mode::UNI; });
 }
 
-/// Whether a segment of the path expands.
+/// Whether the row is of a segment that expands (or not).
 auto in_expansion(const TestRecord& test, bool expands) {
   return [&test, expands](const Observation& row) {
     return (test.path.segments[static_cast<std::size_t>(row.segment)].direction.tensor.trace() > 0) == expands;
