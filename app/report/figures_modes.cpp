@@ -202,13 +202,13 @@ Figure modes_figure(const ReportInput& input) {
   figure.title = "The runs mode by mode, as the paper draws them";
   figure.description =
       "Volume fraction over time, coordination number and rattlers over volume fraction, scaled pressure over "
-      "volumetric "
-      "strain, and where D2 starts from both branches, its coordination number and pressure over deviatoric strain. "
+      "volumetric strain, and where D2 starts from both branches, its coordination number and pressure over deviatoric "
+      "strain. "
       "Thin lines are DEM runs, dashed lines the published equations.";
   figure.caption = notation(
       "Figures of the paper by their numbers. Thin lines: DEM, one for each run; dotted: loading, or D2 from the "
-      "loading "
-      "branch; dashed: Table 2 of the paper. Time of decompression goes on from the compression before it, without the "
+      "loading branch; dashed: Table 2 of the paper. Time of decompression goes on from the compression before it, "
+      "without the "
       "rest between them. {ν}_{c} of Fig. 10 is each mode's own.");
   figure.sources = {"dataset/", "calibration.json"};
   figure.columns = 3;

@@ -64,8 +64,8 @@ Figure figure_of(const SettingsStudy& study) {
   figure.title = "Error of settings against their cost";
   figure.description = "Error reached over particle-steps. " + study.error +
                        ". Bars: one standard error by the packings. Shaded: what sampling alone makes; star: the "
-                       "default; grey: dominated by a "
-                       "cheaper setting that is better beyond chance, or so near the energy balance's stop that other "
+                       "default; grey: dominated by a cheaper setting that is better beyond chance, or so near the "
+                       "energy balance's stop that other "
                        "data sets would not be finished";
   figure.panel_height = 380;
   std::vector<const SettingResult*> by_cost;

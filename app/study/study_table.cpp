@@ -29,12 +29,15 @@ std::string line_of(const SettingResult& r, std::size_t width) {
 
 std::string verdict_of(const SettingResult& judged) {
   if (!std::isfinite(judged.reached)) return fmt::format("{} shows nothing to be judged by\n", judged.outcome.name);
+  const std::string by = fmt::format("{}", fmt::join(judged.dominated_by, ", ")),
+                    perhaps = fmt::format("{}", fmt::join(judged.perhaps_dominated_by, ", "));
   std::string text = judged.outcome.name;
-  text += judged.dominated_by.empty() ? " is not dominated"
-                                      : fmt::format(" is dominated by {}", fmt::join(judged.dominated_by, ", "));
-  if (!judged.perhaps_dominated_by.empty())
-    text += fmt::format("; cheaper and as good or better, but no more than by chance: {}",
-                        fmt::join(judged.perhaps_dominated_by, ", "));
+  if (!by.empty())
+    text += " is dominated by " + by + (perhaps.empty() ? "" : "; perhaps by " + perhaps);
+  else if (!perhaps.empty())
+    text += " may be dominated: cheaper and as good or better, within chance: " + perhaps;
+  else
+    text += " is not dominated";
   text += "\n";
   return text;
 }

@@ -41,6 +41,11 @@ TEST(StudyFiles, FollowTheSchema) {
 TEST(StudyFiles, TheTableSaysWhetherTheDefaultIsDominated) {
   EXPECT_NE(study_table(study(1.1)).find("base is not dominated\n"), std::string::npos);
   EXPECT_NE(study_table(study(1)).find("base is dominated by cheap\n"), std::string::npos);
+  SettingsStudy toss = study(1);
+  std::swap(toss.results[0].dominated_by, toss.results[0].perhaps_dominated_by);
+  EXPECT_NE(study_table(toss).find("base may be dominated: cheaper and as good or better, within chance: cheap\n"),
+            std::string::npos)
+      << "what chance leaves open is not called undominated";
   SettingsStudy bold = study(1.1);
   EXPECT_EQ(study_table(bold).find("near the energy balance's stop"), std::string::npos);
   bold.results[1].outcome.energy_residual = 0.009;
