@@ -51,7 +51,7 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
 void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
                      const CalibrationOptions& options, const RunControl& control) {
   for (const auto& [name, value] :
-       {std::pair{"memory.m", calibration.parameters.memory.m}, {"memory.g", calibration.parameters.memory.g}})
+       {std::pair{"memory.m", calibration.parameters.memory.m}, {"memory.a_P", calibration.parameters.memory.a_P}})
     calibration.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
                                                     "by docs/decisions/0005-memory-law.md"};
   for (const char* group :

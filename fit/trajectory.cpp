@@ -79,7 +79,7 @@ std::vector<Trajectory> trajectories_of(const DataSet& data, double nu_c, const 
   std::vector<Trajectory> all;
   for (const TestRecord* test : data.all_used()) {
     std::size_t first = 0;
-    Deviator<double> s_r = Deviator<double>::Zero();
+    Deviator<double> s_r = Deviator<double>::Zero(), E = s_r;
     for (std::size_t i = 1; i <= test->rows.size(); ++i) {
       if (i < test->rows.size() && test->rows[i].segment == test->rows[i - 1].segment) continue;
       // The last row of a segment is the corner where the next one starts.
@@ -87,8 +87,11 @@ std::vector<Trajectory> trajectories_of(const DataSet& data, double nu_c, const 
         all.push_back(segment_of(*test, test->rows[i - 1].segment, first, i, nu_c, options));
         all.back().cluster = packing_of(data, *test);
         all.back().start.s_r = s_r;
+        all.back().start.E = E;
         if (all.back().start.P > 0) turn_corner(Rung::memory, all.back().start, all.back().direction);
         s_r = all.back().start.s_r;
+        const Eigen::Matrix3d& D = test->path.segments[static_cast<std::size_t>(all.back().segment)].direction.tensor;
+        E = strain_memory(E, all.back().direction, parameter_of(*test, i - 1, test->rows[first].strain.tensor, D));
       }
       first = i - 1;
     }

@@ -61,6 +61,7 @@ LawState<T> combination(const LawState<T>& y, double h, const std::array<LawStat
     for (Eigen::Index j = 0; j < sum.sigma.size(); ++j) {
       sum.sigma(j) += k[i].sigma(j) * c;
       sum.F(j) += k[i].F(j) * c;
+      sum.E(j) += k[i].E(j) * c;
     }
   }
   return sum;
@@ -94,7 +95,7 @@ template <class T, class Visit>
 bool integrate(const Trajectory& trajectory, const LawParameters<T>& p, Rung rung, Coupling coupling, double max_step,
                const Visit& visit) {
   LawState<T> y{T(trajectory.start.P), trajectory.start.sigma.template cast<T>(), trajectory.start.F.template cast<T>(),
-                trajectory.start.s_r.template cast<T>()};
+                trajectory.start.s_r.template cast<T>(), trajectory.start.E.template cast<T>()};
   if (trajectory.starts_on_law) y.P = p.isotropic.P_star(trajectory.nu_start);
   std::array<LawModuli<T>, kStepNodes.size()> moduli;
   moduli.fill(law_moduli(p, trajectory.nu_start, rung));

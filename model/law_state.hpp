@@ -2,7 +2,7 @@
 // State of the law, the direction in which a path drives it, and what a spin does to it. Compression positive,
 // dimensionless (* dropped); deviators are the 5-vectors of tensor.hpp.
 //   L = D + W:  dx = -tr D de,  N = -D'/|D|_dev,  W a = w x a
-//   Jaumann:    da/dt = (da/dt)_law + W a - a W   for sigma', F' and s_r
+//   Jaumann:    da/dt = (da/dt)_law + W a - a W   for sigma', F', s_r and E
 
 #include <Eigen/Geometry>
 
@@ -17,6 +17,7 @@ struct LawState {
   Deviator<T> sigma;                      ///< deviatoric stress times 2<r>/k, compression positive [-]
   Deviator<T> F;                          ///< deviatoric fabric, compression positive [-]
   Deviator<T> s_r = Deviator<T>::Zero();  ///< sigma'/P at the last reversal, zero when virgin; read by Rung::memory [-]
+  Deviator<T> E = Deviator<T>::Zero();    ///< fading memory of the direction of shear, |E| <= 1, zero when virgin; read by Rung::memory [-]
 };
 
 /// Direction of a straight segment as the law needs it, per unit of the path parameter.
@@ -65,6 +66,7 @@ void add_corotation(const LawState<T>& y, const LawDirection& direction, LawStat
   rate.sigma += corotation(direction.spin, y.sigma);
   rate.F += corotation(direction.spin, y.F);
   rate.s_r += corotation(direction.spin, y.s_r);
+  rate.E += corotation(direction.spin, y.E);
 }
 
 }  // namespace grainlaw

@@ -2,12 +2,14 @@
 // Eq. (16) with a memory: what dilatancy at constant volume, reversals and the fabric of uniaxial paths need
 // (docs/decisions/0005-memory-law.md). Compression positive, dimensionless; notation of evolution.hpp, s = sigma'/P.
 //   Delta   distance from s_r, the stress ratio at the last reversal, along N to |s| = s_lim;  xi = |s - s_r|/Delta
-//   flow    = N - q xi^(m-1) (s - s_r)/Delta,       S = <flow,N>, on co-axial paths 1 - q xi^m
-//   dP      = B dx + A1 S de + k (P_t - P) de,      P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
-//   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha/(1 + g f^2)
-//   dF'     = lambda ((F_max/s_max) s - F') de + kappa (F_max/s_max) d_e s - c_F F' <dx>,  <dx> the compressive part of dx,
-//             d_e s = (d_e sigma' - s d_e P)/P the change of s by shear alone: share kappa of the fabric follows stress at once
-//   A1      = (2/3)(a2 B <F',N> - <sigma',N>)
+//   flow    = N - q xi^(n-1) (s - s_r)/Delta,       S = <flow,N>, on co-axial paths 1 - q xi^n
+//   n       = 1 + (m - 1) (1 + <E,N>)^2,            dE = (N - E) de/eps_E, the fading memory of the direction of shear
+//   dP      = B dx + A1 S de + k (1 - h S) (P_t - P) de,   P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
+//   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha
+//   dF'     = lambda (r s - F') de + kappa r d_e s - c_F (F' - kappa r s)/(1 - kappa) <dx>,   r = F_max/s_max, <dx> the compressive part,
+//             d_e s = (d_e sigma' - s d_e P)/P the change of s by shear alone: share kappa of the fabric follows stress at once,
+//             and compression dilutes what does not; c_F is the rate where F' = r s
+//   A1      = (2/3)(a_P B <F',N> - <sigma',N>)
 //   s_lim   = s_max (z + sqrt(1 + z^2)), z = chi k (P_t - P)/(B s_max)   stress-dilatancy: while the packing would dilate, it bears
 //             more, while it would contract, less: s_max + chi k (P_t - P)/B to first order, and never negative
 //   q       = 1 - min(1, B <dx> <s - a2 F',N>/(DG de)), the share of shear that loads: by elasticity alone compression takes
@@ -29,6 +31,12 @@ namespace grainlaw {
 /// Delta, in s_max, below which the stress goes to its limit no faster: no small cycle near the limit is stiff.
 inline constexpr double kLeastDistance = 0.1;
 
+/// eps_E, the shear strain over which the direction of shear is remembered [-].
+inline constexpr double kStrainMemory = 0.3;
+
+/// h: the part of the relaxation of P that waits for plastic shear [-].
+inline constexpr double kPlasticRelaxation = 0.5;
+
 /// <s - s_r, N>: a reversal is where it is, or falls, below zero. Zero without shear.
 template <class T>
 T reversal_value(const LawState<T>& y, const LawDirection& direction) {
@@ -39,6 +47,11 @@ T reversal_value(const LawState<T>& y, const LawDirection& direction) {
 template <class T>
 void reverse(LawState<T>& y) {
   y.s_r = y.sigma / y.P;
+}
+
+/// E after shear along a straight segment from e = 0 to `e`.
+inline Deviator<double> strain_memory(const Deviator<double>& E, const LawDirection& direction, double e) {
+  return direction.N + (E - direction.N) * std::exp(-direction.de * e / kStrainMemory);
 }
 
 /// Volume fraction whose B is that of the reference at `nu`: nu itself, or just above jamming, where B jumps to zero.
@@ -80,9 +93,9 @@ T pressure_density(const LawModuli<T>& m, const T& P) {
   return m.nu * exp((P - m.P_iso) / m.B);
 }
 
-/// How the stress ratio answers to shear that loads: N at a reversal, 0 on the limit [-].
+/// How the stress ratio answers to shear that loads, with the exponent n: N at a reversal, 0 on the limit [-].
 template <class T>
-Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_lim, const T& m) {
+Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_lim, const T& n) {
   using std::pow;
   using std::sqrt;
   if ((s - s_r).dot(N) < 0.0) s_r = s;
@@ -97,8 +110,9 @@ Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>
   const T Delta = square > 0.0 ? T(sqrt(square) - along) : T(-along);
   const Deviator<T> gone = s - s_r;
   if (Delta < least) return (N * Delta - gone) / least;
-  const T gone2 = gone.squaredNorm(), xi = gone2 > 0.0 ? T(sqrt(gone2) / Delta) : T(0.0);
-  return N - gone * (pow(xi, m - 1.0) / Delta);
+  const T gone2 = gone.squaredNorm();
+  if (!(gone2 > 0.0)) return N;  // where the slopes of sqrt and pow are infinite
+  return N - gone * (pow(T(sqrt(gone2) / Delta), n - 1.0) / Delta);
 }
 
 /// s_lim at dilatancy chi k (P_t - P)/B [-].
@@ -120,23 +134,27 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   LawState<T> rate;
   rate.P = B * direction.dx;
   rate.sigma = y.F * (p.memory.a2 * B * direction.dx);
-  rate.F = y.F * (-p.memory.c_F * std::max(direction.dx, 0.0));
-  if (direction.de == 0) return rate;
   const Deviator<T> s = y.sigma / y.P;
+  const T r = m.F_max / m.s_max;
+  rate.F = (y.F - s * (p.memory.kappa * r)) * (p.memory.c_F * -std::max(direction.dx, 0.0) / (1.0 - p.memory.kappa));
+  if (direction.de == 0) return rate;
+  rate.E = (N - y.E) * T(direction.de / kStrainMemory);
   const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
   const T relaxation = p.memory.k * (P_t - y.P);
   const T s_lim = dilating_limit(m.s_max, T(p.memory.chi * relaxation / B));
-  const Deviator<T> loading = memory_flow(s, y.s_r, N, s_lim, p.memory.m);
-  const T A1 = (2.0 / 3.0) * (p.memory.a2 * B * y.F.dot(N) - y.sigma.dot(N));
-  const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha) / (1.0 + p.memory.g * f * f);
+  const T remembered = 1.0 + y.E.dot(N);
+  const Deviator<T> loading = memory_flow(s, y.s_r, N, s_lim, T(1.0 + (p.memory.m - 1.0) * remembered * remembered));
+  const T A1 = (2.0 / 3.0) * (p.memory.a_P * B * y.F.dot(N) - y.sigma.dot(N));
+  const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);
   const T taken = B * std::max(direction.dx, 0.0) * (s - y.F * p.memory.a2).dot(N), added = DG * direction.de;
   const T q = !(taken > 0.0) ? T(1.0) : taken < added ? T(1.0 - taken / added) : T(0.0);
   const Deviator<T> flow = N + (loading - N) * q;
-  const T sheared_P = (A1 * flow.dot(N) + relaxation) * direction.de, F_of_s = m.F_max / m.s_max;
+  const T S = flow.dot(N);
+  const T sheared_P = (A1 * S + relaxation * (1.0 - kPlasticRelaxation * S)) * direction.de;
   const Deviator<T> sheared_s = (flow * added - s * sheared_P) / y.P;
   rate.P += sheared_P;
   rate.sigma += flow * added;
-  rate.F += (s * F_of_s - y.F) * (p.memory.lambda * direction.de) + sheared_s * (p.memory.kappa * F_of_s);
+  rate.F += (s * r - y.F) * (p.memory.lambda * direction.de) + sheared_s * (p.memory.kappa * r);
   return rate;
 }
 

@@ -48,16 +48,16 @@ const std::array<ParameterInfo, kParameterCount>& parameter_table() {
       {"anisotropy.a0", "a_0", "19", "A* = a0 F_dev of the printed single coupling", 0, 10, 0.3, 0.137},
       {"anisotropy.a1", "a_1", "16", "A1/(B F_dev), pressure row", -10, 10, 0.7, none},
       {"anisotropy.a2", "a_2", "16", "A2/(B F_dev), deviatoric stress row", -10, 10, 1, none},
-      {"memory.G", "G", "memory", "elastic shear modulus 2G* = G (nu_P/nu_c - 1)^alpha/(1 + g f^2): prefactor", 0.01, 10, 0.5, none},
+      {"memory.G", "G", "memory", "elastic shear modulus 2G* = G (nu_P/nu_c - 1)^alpha: prefactor", 0.01, 10, 0.5, none},
       {"memory.alpha", "alpha", "memory", "elastic shear modulus: exponent", 0.05, 2, 0.5, none},
-      {"memory.m", "m", "memory", "exponent of loading, S = 1 - xi^m, fixed", 1, 20, 2.5, none},
+      {"memory.m", "m", "memory", "exponent of first loading, S = 1 - xi^m, fixed", 1, 20, 2.5, none},
       {"memory.k", "k", "memory", "rate in shear at which P* goes to its sheared level", 0, 500, 20, none},
       {"memory.lambda", "lambda", "memory", "rate in shear at which fabric follows stress", 1, 2000, 50, none},
-      {"memory.c_F", "c_F", "memory", "dilution of fabric by compression", -100, 100, 5, none},
+      {"memory.c_F", "c_F", "memory", "dilution by compression, of fabric in proportion to stress", -100, 100, 5, none},
       {"memory.a2", "a_2", "memory", "A2/(B F_dev) with fabric that compression dilutes", -10, 10, 1, none},
       {"memory.chi", "chi", "memory", "rise of the limit of the stress ratio with dilatancy", 0, 3, 0.5, none},
-      {"memory.kappa", "kappa", "memory", "share of the fabric that follows stress at once", 0, 1, 0.5, none},
-      {"memory.g", "g", "memory", "softness of the elastic shear modulus along saturated fabric, fixed", 0, 2, 0.15, none},
+      {"memory.kappa", "kappa", "memory", "share of the fabric that follows stress at once", 0, 0.95, 0.5, none},
+      {"memory.a_P", "a_P", "memory", "A2/(B F_dev) of the elastic A1, fixed", 0, 10, 1.18, none},
   }};
   // clang-format on
   return table;

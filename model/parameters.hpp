@@ -35,15 +35,15 @@ struct LodeEffect {
 /// What the memory rung adds to Eq. (16), memory.hpp.
 template <class T>
 struct Memory {
-  T G{}, alpha{};  ///< DG = G (nu_P/nu_c - 1)^alpha/(1 + g f^2) [-]
-  T m{};           ///< exponent of loading, S = 1 - xi^m; fixed [-]
+  T G{}, alpha{};  ///< DG = G (nu_P/nu_c - 1)^alpha [-]
+  T m{};           ///< exponent of first loading, S = 1 - xi^m; fixed [-]
   T k{};           ///< rate of P towards its sheared level [-]
   T lambda{};      ///< rate at which fabric follows stress [-]
   T c_F{};         ///< dilution of fabric by compression [-]
   T a2{};          ///< A2/(B F_dev), with fabric that is diluted [-]
   T chi{};         ///< rise of the limit of the stress ratio with dilatancy [-]
   T kappa{};       ///< share of the fabric that follows stress at once [-]
-  T g{};           ///< softness of DG along saturated fabric; fixed [-]
+  T a_P{};         ///< A2/(B F_dev) of the elastic A1; fixed [-]
 };
 
 template <class T>
@@ -83,7 +83,7 @@ auto fields(Law& p) {
       &p.lode.stress_ratio, &p.lode.fabric,
       &p.anisotropy.a0, &p.anisotropy.a1, &p.anisotropy.a2,
       &p.memory.G, &p.memory.alpha, &p.memory.m, &p.memory.k, &p.memory.lambda, &p.memory.c_F, &p.memory.a2,
-      &p.memory.chi, &p.memory.kappa, &p.memory.g};
+      &p.memory.chi, &p.memory.kappa, &p.memory.a_P};
   // clang-format on
 }
 

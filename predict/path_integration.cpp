@@ -49,6 +49,7 @@ void write_typical(double P, double* y) {
   deviator_at(y + 1).setConstant(0.1 * P);
   deviator_at(y + 6).setConstant(0.1);
   deviator_at(y + 11).setConstant(0.1);
+  deviator_at(y + 16).setConstant(0.1);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #pragma once
 // Eq. (16), with or without memory, on a straight segment in the unknowns that are integrated. Its volumetric terms are
 // total differentials, B dx = dP(nu) with P(nu) of Eq. (14), and need no integration where F' stays:
-//   y = (Pi, tau (5), F' (5), s_r (5)),   P = P(nu) + Pi,   sigma' = tau + g F'
+//   y = (Pi, tau (5), F' (5), s_r (5), E (5)),   P = P(nu) + Pi,   sigma' = tau + g F'
 //   g = a2 P(nu) (Coupling::energy, memory) or (a0/3) ln(nu/nu_start) (Coupling::single), so that dg = (A2/F') dx
-//   dPi = A1 S de,   dtau = DG (N - sigma'/(P s_max)) de - g dF',   dF', ds_r as they are
+//   dPi = A1 S de,   dtau = DG (N - sigma'/(P s_max)) de - g dF',   dF', ds_r, dE as they are
 // Memory's B is that at its own jamming density, and what it differs by from P(nu)'s stays in dPi and dtau.
 // Without it an error made where P is large is carried down to where it is small: from nu = 0.82 to 0.67 it grows 54 times.
 
@@ -16,25 +16,26 @@
 
 namespace grainlaw::predict {
 
-inline constexpr std::size_t kUnknowns = 16;
+inline constexpr std::size_t kUnknowns = 21;
 using Unknowns = std::array<double, kUnknowns>;
 
 /// The five numbers of a deviator among the unknowns.
 inline Eigen::Map<Deviator<double>> deviator_at(double* y) { return Eigen::Map<Deviator<double>>(y); }
 inline Eigen::Map<const Deviator<double>> deviator_at(const double* y) { return Eigen::Map<const Deviator<double>>(y); }
 
-/// P, sigma', F', s_r in the order of the unknowns.
+/// P, sigma', F', s_r, E in the order of the unknowns.
 inline Unknowns packed(const LawState<double>& state) {
   Unknowns y;
   y[0] = state.P;
   deviator_at(y.data() + 1) = state.sigma;
   deviator_at(y.data() + 6) = state.F;
   deviator_at(y.data() + 11) = state.s_r;
+  deviator_at(y.data() + 16) = state.E;
   return y;
 }
 
 inline LawState<double> unpacked(const double* y) {
-  return {y[0], deviator_at(y + 1), deviator_at(y + 6), deviator_at(y + 11)};
+  return {y[0], deviator_at(y + 1), deviator_at(y + 6), deviator_at(y + 11), deviator_at(y + 16)};
 }
 
 /// The law on one segment, continued harmlessly past the end of the jammed range, where trial steps of a solver look.
@@ -86,6 +87,7 @@ class SegmentLaw {
     deviator_at(rate + 1) = of_state.sigma - state.F * (dg * direction_.dx) - here.g * of_state.F;
     deviator_at(rate + 6) = of_state.F;
     deviator_at(rate + 11) = of_state.s_r;
+    deviator_at(rate + 16) = of_state.E;
   }
 
   /// What a relative tolerance refers to: P, sigma', F', not the differences that stand for them.
@@ -95,6 +97,7 @@ class SegmentLaw {
     deviator_at(scale + 1) = state.sigma.cwiseAbs();
     deviator_at(scale + 6) = state.F.cwiseAbs();
     deviator_at(scale + 11) = state.s_r.cwiseAbs();
+    deviator_at(scale + 16) = state.E.cwiseAbs();
   }
 
  private:

@@ -84,6 +84,7 @@ struct Walker::Impl {
       state.sigma += h * rate.sigma;
       state.F += h * rate.F;
       state.s_r += h * rate.s_r;
+      state.E += h * rate.E;
     }
     return n;
   }

@@ -43,16 +43,26 @@ fit::PackingScatter scatter_from_json(const Json& object) {
           number_or_nan(object["s_par"]), number_or_nan(object["F_par"])};
 }
 
-void read_covariance(const Json& object, Eigen::MatrixXd& covariance) {
-  const Json &names = object["names"], &matrix = object["matrix"];
-  std::vector<Eigen::Index> index;
-  for (const Json& name : names) index.push_back(static_cast<Eigen::Index>(parameter_index(name)));
+constexpr int kVersion = 4;
+
+/// Whether a parameter is of the memory rung of an earlier program, which was another law (docs/decisions/0005-memory-law.md).
+bool of_earlier_memory(const Json& document, const std::string& name) {
+  return document["format_version"] < kVersion && name.starts_with("memory.");
+}
+
+void read_covariance(const Json& document, Eigen::MatrixXd& covariance) {
+  const Json &names = document["covariance"]["names"], &matrix = document["covariance"]["matrix"];
+  std::vector<Eigen::Index> index;  // -1: not read
+  for (const std::string name : names)
+    index.push_back(of_earlier_memory(document, name) ? -1 : static_cast<Eigen::Index>(parameter_index(name)));
   if (matrix.size() != index.size())
     throw InvalidInput("covariance.matrix: needs one row for each of covariance.names");
   for (std::size_t i = 0; i < index.size(); ++i) {
     if (matrix[i].size() != index.size())
       throw InvalidInput(fmt::format("covariance.matrix[{}]: needs {} numbers", i, index.size()));
-    for (std::size_t j = 0; j < index.size(); ++j) covariance(index[i], index[j]) = matrix[i][j].get<double>();
+    for (std::size_t j = 0; j < index.size(); ++j) {
+      if (index[i] >= 0 && index[j] >= 0) covariance(index[i], index[j]) = matrix[i][j].get<double>();
+    }
   }
 }
 
@@ -65,18 +75,6 @@ bool without_exponential(const fit::Calibration& calibration, std::size_t alpha)
   return calibration.estimates[Q_c].status != fit::Status::not_identified && *fields(calibration.parameters)[Q_c] == 0;
 }
 
-/// Files of earlier versions come from other memory rungs (docs/decisions/0005-memory-law.md): theirs is no law of this program.
-void forget_memory(fit::Calibration& calibration) {
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    if (!std::string(parameter_table()[i].name).starts_with("memory.")) continue;
-    calibration.estimates[i] = {std::nan(""), std::nan(""), fit::Status::not_identified,
-                                "the file is older than the memory rung of this program"};
-    const auto k = static_cast<Eigen::Index>(i);
-    calibration.covariance.row(k).setZero();
-    calibration.covariance.col(k).setZero();
-  }
-}
-
 }  // namespace
 
 void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters) {
@@ -84,7 +82,7 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
   const auto values = fields(c.parameters);
   OrderedJson document;
   document["format"] = "grainlaw parameters";
-  document["format_version"] = 3;
+  document["format_version"] = kVersion;
   document["coupling"] = to_string(c.coupling);
   document["converged"] = c.converged;
   OrderedJson& table = document["parameters"] = OrderedJson::object();
@@ -117,12 +115,16 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   c.converged = document.value("converged", false);
   c.parameters = start_parameters();
   c.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
-  for (fit::Estimate& estimate : c.estimates) {
-    estimate = {std::nan(""), std::nan(""), fit::Status::not_identified, "not in the file"};
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    c.estimates[i] = {std::nan(""), std::nan(""), fit::Status::not_identified,
+                      of_earlier_memory(document, parameter_table()[i].name)
+                          ? "the file is older than the memory rung of this program"
+                          : "not in the file"};
   }
   try {
     const auto values = fields(c.parameters);
     for (const auto& item : document["parameters"].items()) {
+      if (of_earlier_memory(document, item.key())) continue;
       const std::size_t i = parameter_index(item.key());
       fit::Estimate& estimate = c.estimates[i];
       const ParameterInfo& info = parameter_table()[i];
@@ -138,8 +140,7 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
       }
       *values[i] = estimate.value;
     }
-    if (document.contains("covariance")) read_covariance(document["covariance"], c.covariance);
-    if (document["format_version"] < 3) forget_memory(c);
+    if (document.contains("covariance")) read_covariance(document, c.covariance);
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", name, error.what()));
   }

@@ -30,7 +30,7 @@ struct SyntheticOptions {
   double shear_strain = 0.30;           ///< eps_dev of D2
   int rows = 120;                       ///< per segment
   bool sequences = true;                ///< D2 to eps_dev = 0.15, ISO to nu + 0.03 and back
-  Rung rung = Rung::evolution;      ///< of the paths with shear
+  Rung rung = Rung::evolution;          ///< of the paths with shear
   Coupling coupling = Coupling::energy;
   double dilatancy_strain = 0;      ///< P approaches the steady law as 1 - exp(-eps_dev/this); 0: no dilatancy
   double noise_P = 0;               ///< standard deviation, relative to P [-]
@@ -154,13 +154,14 @@ class SyntheticDataset {
   }
 
   void advance(const StraightSegment& segment, double from, double to, LawState<double>& y) const {
-    using Vector = std::array<double, 11>;
+    using Vector = std::array<double, 16>;
     const LawDirection direction = law_direction(segment.direction);
     const auto pack = [](const LawState<double>& s) {
       Vector v{s.P};
       for (int i = 0; i < 5; ++i) {
         v[static_cast<std::size_t>(1 + i)] = s.sigma(i);
         v[static_cast<std::size_t>(6 + i)] = s.F(i);
+        v[static_cast<std::size_t>(11 + i)] = s.E(i);
       }
       return v;
     };
@@ -170,6 +171,7 @@ class SyntheticDataset {
       for (int i = 0; i < 5; ++i) {
         s.sigma(i) = v[static_cast<std::size_t>(1 + i)];
         s.F(i) = v[static_cast<std::size_t>(6 + i)];
+        s.E(i) = v[static_cast<std::size_t>(11 + i)];
       }
       return s;
     };

@@ -22,7 +22,7 @@ std::vector<TestRecord> noisy_tests(const std::vector<std::uint64_t>& seeds) {
 /// Long steps, for speed.
 CalibrationOptions coarse() {
   CalibrationOptions options;
-  options.max_step = 3e-2;
+  options.max_step = 4e-3;
   return options;
 }
 

@@ -1,5 +1,6 @@
 #include "fit/memory_fit.hpp"
 
+#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +18,7 @@ using testing::SyntheticOptions;
 /// Parameters of the size that DEM gives.
 LawParameters<double> memory_truth() {
   LawParameters<double> p = testing::synthetic_truth();
-  p.memory = {0.8, 0.7, 2.5, 10, 45, 10, 1.1, 0.7, 0.6, 0.15};
+  p.memory = {0.8, 0.7, 2.5, 10, 45, 10, 1.1, 0.7, 0.6, 1.18};
   return p;
 }
 
@@ -54,7 +55,7 @@ TEST(MemoryFit, GivesBackWhatMadeTheData) {
   EXPECT_NEAR(law.memory.chi, expected.memory.chi, 1e-4);
   EXPECT_NEAR(law.memory.kappa, expected.memory.kappa, 1e-4);
   EXPECT_EQ(law.memory.m, 2.5) << "fixed";
-  EXPECT_EQ(law.memory.g, 0.15) << "fixed";
+  EXPECT_EQ(law.memory.a_P, 1.18) << "fixed";
   for (const char* name : {"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.c_F", "memory.a2",
                            "memory.chi", "memory.kappa"})
     EXPECT_EQ(estimate(fit, name).status, Status::fitted) << name;
@@ -73,20 +74,21 @@ TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
   EXPECT_EQ(estimate(fit, "memory.k").status, Status::fitted);
 }
 
-// Where all of the fabric may follow stress at once, nobody asks at what rate the rest follows.
-TEST(MemoryFit, TheRateOfALagThatMayBeNoneNeedNotBeKnown) {
+// The less of the fabric lags behind stress, the less it matters at what rate.
+TEST(MemoryFit, TheRateOfALagNeedsToBeKnownOnlyAsFarAsItMatters) {
   LawParameters<double> truth = memory_truth();
   SyntheticOptions options = of_memory();
   options.noise_s = options.noise_F = 0.01;
   options.seeds = {1, 2, 3};
-  for (const double kappa : {0.6, 0.99}) {
+  options.rows = 12;
+  for (const double kappa : {0.5, 0.85}) {
     truth.memory.kappa = kappa;
     LawParameters<double> law = at_start();
     const StageFit fit = fit_memory(memory_trajectories(testing::synthetic_dataset(truth, options)), law, {}, {});
     const Estimate lambda = estimate(fit, "memory.lambda");
-    EXPECT_EQ(lambda.status, Status::fitted) << kappa << ": " << lambda.note;
-    const bool vague = lambda.standard_error > 0.5 * lambda.value;
-    EXPECT_EQ(vague, kappa > 0.9) << lambda.value << " +- " << lambda.standard_error;
+    EXPECT_NE(lambda.status, Status::not_identified) << kappa << ": " << lambda.note;
+    const bool vague = !(lambda.standard_error <= 0.5 * lambda.value);  // on a bound it has no error
+    EXPECT_EQ(vague, kappa > 0.8) << lambda.value << " +- " << lambda.standard_error;
   }
 }
 
@@ -115,8 +117,24 @@ TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
   const Estimate& G = calibration.estimates[parameter_index("memory.G")];
   EXPECT_EQ(G.status, Status::not_identified);
   EXPECT_NE(G.note.find("shear by D2 at more densities"), std::string::npos) << G.note;
-  for (const char* name : {"memory.m", "memory.g"})
+  for (const char* name : {"memory.m", "memory.a_P"})
     EXPECT_EQ(calibration.estimates[parameter_index(name)].status, Status::fixed) << name;
+}
+
+TEST(MemoryFit, SlopesAreFiniteAtAReversal) {
+  // (s - s_r)/Delta = 0 to a power below one: there shear is elastic, whatever the exponent.
+  using Dual = ceres::Jet<double, 1>;
+  LawParameters<Dual> p = cast<Dual>(memory_truth());
+  p.memory.m.v(0) = 1;
+  const LawDirection d = law_direction(direction_of(Mode::D2));
+  const Deviator<double> N = d.N;
+  LawState<double> y{0.02, 0.16 * 0.02 * N, 0.12 * N, 0.16 * N, -0.9 * N};
+  y.s_r = y.sigma / y.P;
+  const LawState<Dual> dual{Dual(y.P), y.sigma.cast<Dual>(), y.F.cast<Dual>(), y.s_r.cast<Dual>(), y.E.cast<Dual>()};
+  const LawState<Dual> r = law_rate(p, Rung::memory, Coupling::energy, dual, 0.7, d);
+  EXPECT_EQ(r.P.v(0), 0);
+  for (const Dual& x : r.sigma) EXPECT_EQ(x.v(0), 0);
+  for (const Dual& x : r.F) EXPECT_EQ(x.v(0), 0);
 }
 
 TEST(MemoryFit, ASegmentThatTurnsBackStartsFromItsReversal) {
@@ -130,15 +148,18 @@ TEST(MemoryFit, ASegmentThatTurnsBackStartsFromItsReversal) {
   for (const Trajectory& t : memory_trajectories(tests)) {
     if (t.test != "cycle") continue;
     ++found;
-    const Deviator<double> s = t.start.sigma / t.start.P;
+    const Deviator<double> s = t.start.sigma / t.start.P, N = law_direction(direction_of(Mode::D2)).N;
     if (t.segment == 0) {
       EXPECT_TRUE(t.start.s_r.isZero(0));
+      EXPECT_TRUE(t.start.E.isZero(0));
     }
     if (t.segment == 1) {
       EXPECT_EQ(t.start.s_r, s);
+      EXPECT_NEAR(t.start.E.dot(N), 1 - std::exp(-0.1 / kStrainMemory), 1e-9);
     }
     if (t.segment == 2) {
       EXPECT_GT((t.start.s_r - s).norm(), 0.1) << "carried on";
+      EXPECT_NEAR(t.start.E.dot(N), -1 + (2 - std::exp(-0.1 / kStrainMemory)) * std::exp(-0.1 / kStrainMemory), 1e-9);
     }
   }
   EXPECT_EQ(found, 3);

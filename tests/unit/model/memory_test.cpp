@@ -14,28 +14,29 @@ namespace {
 LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.782, 0.59, 2, 16.5, 40, 12, 1.18, 0.8, 0.6, 0.15};
+  p.memory = {0.782, 0.59, 2, 16.5, 40, 12, 1.18, 0.8, 0.6, 1.3};
   return p;
 }
 
 const Deviator<double> kN = law_direction(direction_of(Mode::D2)).N;
 const Deviator<double> kZero = Deviator<double>::Zero();
 
-LawState<double> coaxial(double P, double s, double F, double s_r) { return {P, s * P * kN, F * kN, s_r * kN}; }
+LawState<double> coaxial(double P, double s, double F, double s_r, double E = 0) {
+  return {P, s * P * kN, F * kN, s_r * kN, E * kN};
+}
 
 LawState<double> rate(const LawParameters<double>& p, const LawState<double>& y, double nu, const LawDirection& d) {
   return law_rate(p, Rung::memory, Coupling::energy, y, nu, d);
 }
 
-/// Softest along saturated fabric.
-double elastic(const LawParameters<double>& p, double nu_P, double f) {
-  return 0.782 * std::pow(nu_P / p.isotropic.pressure.nu_c - 1, 0.59) / (1 + 0.15 * f * f);
+double elastic(const LawParameters<double>& p, double nu_P) {
+  return 0.782 * std::pow(nu_P / p.isotropic.pressure.nu_c - 1, 0.59);
 }
 
 double limit(double s_max, double dilatancy) { return std::exp(std::asinh(dilatancy / s_max)) * s_max; }
 
 TEST(Memory, InvariantFormOnCoaxialPaths) {
-  // with sg the sign of the shear: S = 1 - q xi^2, xi = sg (s - s_r)/Delta, Delta = s_lim - sg s_r
+  // with sg the sign of the shear: S = 1 - q xi^n, xi = sg (s - s_r)/Delta, Delta = s_lim - sg s_r, n = 1 + (1 + sg E)^2
   const LawParameters<double> p = parameters();
   int dilating = 0, contracting = 0, partly = 0, not_loading = 0;
   for (const double nu : {0.68, 0.74, 0.82}) {
@@ -43,26 +44,30 @@ TEST(Memory, InvariantFormOnCoaxialPaths) {
     for (const double sg : {1.0, -1.0}) {
       for (const double dx : {-0.8, 0.0, 1.3, 20.0}) {
         const double P = p.isotropic.P_star(nu), F = sg * 0.05, s_r = -sg * 0.1, s = s_r + sg * 0.2, de = 1.7;
-        const LawState<double> r = rate(p, coaxial(P, s, F, s_r), nu, {dx, de, sg * kN});
-        const double B = p.isotropic.B_star(nu), A2 = 1.18 * B * F, A1 = 2.0 / 3 * (A2 - s * P);
+        const double E = dx > 1 ? -sg * 0.6 : 0.7;
+        const LawState<double> r = rate(p, coaxial(P, s, F, s_r, E), nu, {dx, de, sg * kN});
+        const double B = p.isotropic.B_star(nu), A1 = 2.0 / 3 * (1.3 * B * F - s * P);
         const double f = sg * F / F_max;
-        const double DG = elastic(p, nu, f);
+        const double DG = elastic(p, nu);
         const double P_t = P + (p.steady.P_star(nu) - P) * f * std::abs(f);
         const double s_lim = limit(s_max, 0.8 * 16.5 * (P_t - P) / B);
         const double q = std::clamp(1 - B * std::max(dx, 0.0) * sg * (s - 1.18 * F) / (DG * de), 0.0, 1.0);
-        const double xi = sg * (s - s_r) / (s_lim - sg * s_r), S = 1 - q * xi * xi;
-        const double sheared_P = (A1 * S * sg + 16.5 * (P_t - P)) * de,
+        const double xi = sg * (s - s_r) / (s_lim - sg * s_r), S = 1 - q * std::pow(xi, 1 + std::pow(1 + sg * E, 2));
+        const double sheared_P = (A1 * S * sg + 16.5 * (1 - kPlasticRelaxation * S) * (P_t - P)) * de,
                      sheared_s = (DG * S * sg * de - s * sheared_P) / P;
         dilating += s_lim > 1.01 * s_max ? 1 : 0;
         contracting += s_lim < 0.99 * s_max ? 1 : 0;
         partly += q > 0 && q < 1 ? 1 : 0;
         not_loading += q == 0 ? 1 : 0;
         EXPECT_NEAR(r.P, B * dx + sheared_P, 1e-12);
-        EXPECT_NEAR(r.sigma.dot(kN), A2 * dx + DG * S * sg * de, 1e-12);
+        EXPECT_NEAR(r.sigma.dot(kN), 1.18 * B * F * dx + DG * S * sg * de, 1e-12);
         EXPECT_NEAR(r.F.dot(kN),
-                    (40 * (F_max / s_max * s - F)) * de + 0.6 * F_max / s_max * sheared_s - 12 * F * std::max(dx, 0.0),
+                    (40 * (F_max / s_max * s - F)) * de + 0.6 * F_max / s_max * sheared_s -
+                        12 / 0.4 * (F - 0.6 * F_max / s_max * s) * std::max(dx, 0.0),
                     1e-12);
+        EXPECT_NEAR(r.E.dot(kN), (sg - E) * de / kStrainMemory, 1e-12);
         EXPECT_LE((r.sigma - r.sigma.dot(kN) * kN).norm() + (r.F - r.F.dot(kN) * kN).norm(), 1e-14) << "stays co-axial";
+        EXPECT_LE((r.E - r.E.dot(kN) * kN).norm(), 1e-14);
         EXPECT_TRUE(r.s_r.isZero(0));
       }
     }
@@ -96,7 +101,7 @@ TEST(Memory, OnTheLimitCompressionTakesTheStressAlong) {
                B = p.isotropic.B_star(nu_P);
   const LawState<double> y = coaxial(P, s_max, 0.05, 0);
   for (const double dx : {0.0, 0.3, 1.0}) EXPECT_NEAR(rate(p, y, nu, {dx, 1, kN}).sigma.dot(kN), s_max * B * dx, 1e-13);
-  const double DG = elastic(p, nu_P, 0.05 / p.fabric_max.value(nu, p.shear_nu_c));
+  const double DG = elastic(p, nu_P);
   EXPECT_NEAR(rate(p, y, nu, {9, 1, kN}).sigma.dot(kN), 1.18 * B * 0.05 * 9 + DG, 1e-13) << "no longer";
   // and where shear fades, so does its part, whatever the direction
   const LawState<double> alone = rate(p, y, nu, {1, 0, kZero});
@@ -107,13 +112,13 @@ TEST(Memory, OnTheLimitCompressionTakesTheStressAlong) {
 }
 
 TEST(Memory, WithoutItsTermsItIsEquation16) {
-  // m = 1, k = c_F = 0, s_r = 0 and P on ISO unloading: with DG = beta_s s_max P the rows of P and sigma' are those of Eq. (16); the
+  // m = 1, k = c_F = 0, a_P = a2, s_r = 0 and P on ISO unloading: with DG = beta_s s_max P the rows of P and sigma' are those of Eq. (16); the
   // fabric's where s = s_max N, with lambda = beta_F.
   LawParameters<double> p = parameters();
   for (const double nu : {0.68, 0.74, 0.82}) {
     const LawModuli<double> m = moduli_at(p, nu);
     const double P = p.isotropic.P_star(nu);
-    p.memory = {m.beta_s * m.s_max * P, 0, 1, 0, m.beta_F, 0, p.anisotropy.a2};
+    p.memory = {m.beta_s * m.s_max * P, 0, 1, 0, m.beta_F, 0, p.anisotropy.a2, 0, 0, p.anisotropy.a2};
     for (const double dx : {-0.5, 0.0, 0.9}) {
       LawState<double> y{P, 0.03 * P * kN, 0.06 * kN, kZero};
       y.sigma(3) += 0.04 * P;
@@ -139,7 +144,7 @@ TEST(Memory, ShearFirstGoesWithTheElasticSlopeInAnyDirectionAfterAReversal) {
   const double nu = 0.7, P = p.isotropic.P_star(nu);
   LawState<double> y = coaxial(P, 0.16, 0.12, 0);
   const LawDirection back{0, 1, -kN};
-  const double DG = elastic(p, nu, 0.12 / p.fabric_max.value(nu, p.shear_nu_c));
+  const double DG = elastic(p, nu);
   EXPECT_NEAR(rate(p, y, nu, back).sigma.dot(kN), -DG, 1e-14) << "not yet turned, but treated as if";
   turn_corner(Rung::memory, y, back);
   EXPECT_NEAR(rate(p, y, nu, back).sigma.dot(kN), -DG, 1e-14);
@@ -162,7 +167,7 @@ TEST(Memory, NearTheLimitNothingStiffensAndFromBeyondItComesBack) {
   LawParameters<double> p = parameters();
   p.memory.chi = 0;
   const double nu = 0.7, P = p.isotropic.P_star(nu), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
-  const double DG = elastic(p, nu, 0.1 / p.fabric_max.value(nu, p.shear_nu_c));
+  const double DG = elastic(p, nu);
   for (const double beyond : {0.999, 1.0, 1.001, 1.3}) {
     const LawState<double> y = coaxial(P, beyond * s_max, 0.1, beyond * s_max);
     const double slope = rate(p, y, nu, {0, 1, kN}).sigma.dot(kN);
@@ -207,17 +212,56 @@ TEST(Memory, BulkModulusIsThatOfTheReferenceAtThePressure) {
 
 TEST(Memory, OtherScalarGivesTheSameRate) {
   const LawParameters<double> p = parameters();
-  LawState<double> y = coaxial(0.021, 0.08, 0.05, -0.03);
+  LawState<double> y = coaxial(0.021, 0.08, 0.05, -0.03, 0.4);
   y.sigma(2) += 3e-4;
   const LawDirection d = law_direction(direction_of(Mode::UNI));
   const auto q = cast<long double>(p);
-  const LawState<long double> wide{y.P, y.sigma.cast<long double>(), y.F.cast<long double>(),
-                                   y.s_r.cast<long double>()};
+  const LawState<long double> wide{y.P, y.sigma.cast<long double>(), y.F.cast<long double>(), y.s_r.cast<long double>(),
+                                   y.E.cast<long double>()};
   const auto a = rate(p, y, 0.7, d);
   const auto b = law_rate(q, Rung::memory, Coupling::energy, wide, 0.7, d);
   EXPECT_NEAR(a.P, static_cast<double>(b.P), 1e-13 * std::abs(a.P));
   EXPECT_LE((a.sigma - b.sigma.cast<double>()).norm(), 1e-13 * a.sigma.norm());
   EXPECT_LE((a.F - b.F.cast<double>()).norm(), 1e-13 * a.F.norm());
+  EXPECT_LE((a.E - b.E.cast<double>()).norm(), 1e-13 * a.E.norm());
+}
+
+TEST(Memory, DirectionOfShearIsRememberedOverItsStrain) {
+  // strain_memory() is the solution of dE = (N - E) de/eps_E on a straight segment, <E,N> from -1 to 1.
+  const LawParameters<double> p = parameters();
+  LawDirection d = law_direction(direction_of(Mode::UNI));
+  const Deviator<double> after = strain_memory(-d.N, d, 0.2), h_after = strain_memory(-d.N, d, 0.2 + 1e-6),
+                         h_before = strain_memory(-d.N, d, 0.2 - 1e-6);
+  LawState<double> y = coaxial(p.isotropic.P_star(0.7), 0.1, 0.05, 0);
+  y.E = after;
+  EXPECT_LE((rate(p, y, 0.7, d).E - (h_after - h_before) / 2e-6).norm(), 1e-8);
+  EXPECT_LE((strain_memory(kZero, d, 100) - d.N).norm(), 1e-12);
+  EXPECT_EQ(strain_memory(after, law_direction(direction_of(Mode::ISO)), 0.3), after) << "no shear, nothing forgotten";
+  y.E = after;
+  EXPECT_TRUE(rate(p, y, 0.7, law_direction(direction_of(Mode::ISO))).E.isZero(0));
+}
+
+TEST(Memory, AfterLongShearAReversalSoftensSooner) {
+  // n = 1 + (m - 1)(1 + <E,N>)^2: from 1 where all of memory lies behind, through m at none, to 1 + 4 (m - 1).
+  const LawParameters<double> p = parameters();
+  const double nu = 0.7, P = p.steady.P_star(nu), F = p.fabric_max.value(nu, p.shear_nu_c);
+  const double s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
+  const auto S = [&](double E) {  // half-way from s_r = 0 to the limit of a packing at its sheared pressure
+    return rate(p, coaxial(P, s_max / 2, F, 0, E), nu, {0, 1, kN}).sigma.dot(kN) /
+           rate(p, coaxial(P, 0, F, 0, E), nu, {0, 1, kN}).sigma.dot(kN);
+  };
+  EXPECT_NEAR(S(-1), 1 - 0.5, 1e-14);
+  EXPECT_NEAR(S(0), 1 - std::pow(0.5, 2), 1e-14);
+  EXPECT_NEAR(S(1), 1 - std::pow(0.5, 5), 1e-14);
+}
+
+TEST(Memory, CompressionDilutesOnlyWhatDoesNotFollowStressAtOnce) {
+  const LawParameters<double> p = parameters();
+  const double nu = 0.7, P = p.isotropic.P_star(nu);
+  const double r = p.fabric_max.value(nu, p.shear_nu_c) / p.stress_ratio_max.value(nu, p.shear_nu_c);
+  const LawDirection iso = law_direction(direction_of(Mode::ISO));
+  EXPECT_LE(rate(p, coaxial(P, 0.1, 0.6 * r * 0.1, 0), nu, iso).F.norm(), 1e-15);
+  EXPECT_NEAR(rate(p, coaxial(P, 0.1, r * 0.1, 0), nu, iso).F.dot(kN), -12 * r * 0.1 * 3, 1e-14) << "in proportion";
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST(Parameters, EachNameIsTheFieldThatItSays) {
                                                       {"memory.a2", &p.memory.a2},
                                                       {"memory.chi", &p.memory.chi},
                                                       {"memory.kappa", &p.memory.kappa},
-                                                      {"memory.g", &p.memory.g}};
+                                                      {"memory.a_P", &p.memory.a_P}};
   ASSERT_EQ(expected.size(), kParameterCount);
   const auto field = fields(p);
   for (std::size_t i = 0; i < kParameterCount; ++i) {

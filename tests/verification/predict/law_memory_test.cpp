@@ -19,12 +19,12 @@ using testing::path_from;
 LawParameters<double> parameters() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.8, 0.7, 2.5, 10, 45, 10, 1.1, 0.7, 0.6, 0.15};
+  p.memory = {0.8, 0.7, 2.5, 10, 45, 10, 1.1, 0.7, 0.6, 1.18};
   return p;
 }
 
 LawState<double> sum(const LawState<double>& y, double h, const LawState<double>& k) {
-  return {y.P + h * k.P, y.sigma + h * k.sigma, y.F + h * k.F, y.s_r + h * k.s_r};
+  return {y.P + h * k.P, y.sigma + h * k.sigma, y.F + h * k.F, y.s_r + h * k.s_r, y.E + h * k.E};
 }
 
 std::vector<LawState<double>> corners_by_runge_kutta(const LawParameters<double>& p,

@@ -156,7 +156,7 @@ PathSegment segment(Mode mode, double eps_dev, std::vector<Condition> conditions
 double farthest(Rung rung, const PathSegment& segment) {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.8, 0.7, 2.5, 10, 45, 9, 1.0, 0.7, 0.6, 0.15};
+  p.memory = {0.8, 0.7, 2.5, 10, 45, 9, 1.0, 0.7, 0.6, 1.18};
   const LawState<double> start = state_from_law(p, 0.70);
   const auto rows =
       predict_by_law(rung, p, Coupling::energy, {0.70, Branch::unloading, {segment}}, start, 20, {1e-9, 1e-13}, {}, {})

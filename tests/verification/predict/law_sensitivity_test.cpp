@@ -25,7 +25,7 @@ constexpr Tolerances kTight{1e-12, 1e-16};
 LawParameters<double> law_with_memory() {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
-  p.memory = {0.8, 0.7, 2.5, 10, 45, 9, 1.0, 0.7, 0.6, 0.15};
+  p.memory = {0.8, 0.7, 2.5, 10, 45, 9, 1.0, 0.7, 0.6, 1.18};
   p.lode = {0.05, 0.8};  // no row of the paths below stands where s_dev = 0, which has a kink there
   return p;
 }
@@ -113,7 +113,7 @@ double farthest(const Case& c) {
 
 std::vector<StraightSegment> uniaxial() { return path_from(0.70, {leg_to(Mode::UNI, 0.80)}); }
 std::vector<StraightSegment> reversal() {
-  return path_from(0.70, {leg(Mode::D2, 0.1), leg(Mode::D2, 0.15, true), leg(Mode::D2, 0.05)});
+  return path_from(0.70, {leg(Mode::D2, 0.1), leg(Mode::D2, 0.16, true), leg(Mode::D2, 0.05)});
 }
 std::vector<StraightSegment> volume_after_shear() {
   return path_from(0.70, {leg(Mode::D3, 0.06), leg_to(Mode::ISO, 0.73), leg_to(Mode::UNI, 0.71, true)});
