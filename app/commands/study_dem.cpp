@@ -16,8 +16,9 @@ namespace grainlaw::app {
 namespace {
 
 constexpr const char* kErrorOfPackings =
-    "root mean square over P_star, C_star, s_max, beta_s, F_max, beta_F at the densities of shear of the relative "
-    "difference from the reference, mean over packings";
+    "root mean square over P_star, C_star, s_max, beta_s, F_max, beta_F at the densities of shear of the difference "
+    "from "
+    "the reference, mean over packings, each over its chance: the standard error of that difference";
 
 }  // namespace
 

@@ -29,7 +29,7 @@ Series point_of(const SettingResult& r, std::size_t number) {
 /// The edge of what sampling makes, and the shade below it down to `bottom`.
 std::array<Series, 2> floor_of(const std::vector<const SettingResult*>& by_cost, Packings packings, double bottom) {
   Series edge, shade;
-  edge.label = plain(packings == Packings::given ? "floor: scatter over the packings that all settings share"
+  edge.label = plain(packings == Packings::given ? "floor: chance of the packings that all settings share"
                                                  : "floor: sampling, by the setting's own packings");
   edge.line = Line::dotted;
   shade.bands.emplace_back();
@@ -45,7 +45,7 @@ std::array<Series, 2> floor_of(const std::vector<const SettingResult*>& by_cost,
   return {shade, edge};
 }
 
-/// The decade below the least error or floor.
+/// The decade strictly below the least error or floor.
 double bottom_of(const std::vector<const SettingResult*>& results) {
   double least = 1;
   for (const SettingResult* r : results) {
@@ -53,7 +53,7 @@ double bottom_of(const std::vector<const SettingResult*>& results) {
       if (value > 0) least = std::min(least, value);
     }
   }
-  return std::pow(10.0, std::floor(std::log10(least)));
+  return std::pow(10.0, std::ceil(std::log10(least)) - 1);
 }
 
 }  // namespace
@@ -75,7 +75,8 @@ Figure figure_of(const SettingsStudy& study) {
   });
   Panel panel;
   panel.x.label = plain("particle-steps");
-  panel.y.label = plain("relative error reached [–]");
+  panel.y.label = plain(study.packings == Packings::given ? "error reached, in units of the packings' chance [–]"
+                                                          : "relative error reached [–]");
   panel.x.logarithmic = panel.y.logarithmic = true;
   const double bottom = bottom_of(by_cost);
   panel.y.from = bottom;

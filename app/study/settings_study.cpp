@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "dem/element_test.hpp"
@@ -13,63 +14,95 @@ namespace {
 // Keys of SPEC that say how to compute, and nothing of what is computed.
 const std::set<std::string> kNumerical{"time_step_fraction", "strain_rate", "rows", "precision", "quasi_static_step"};
 
-/// Whether the packings of two settings scatter alike: they differ in numerical keys only, and show the same by the same model.
+/// Whether the packings of two settings scatter alike: the same ones, computed otherwise at most, seen by the same model.
 bool scatters_alike(const SettingResult& a, const SettingResult& b) {
   const auto physical = [](const SettingResult& r) {
     Changes changes = r.outcome.changes;
     std::erase_if(changes, [](const auto& change) { return kNumerical.contains(change.first); });
     return changes;
   };
-  const auto shown = [](const SettingResult& r) {
-    return std::count_if(r.errors.begin(), r.errors.end(),
-                         [](const QuantityError& e) { return e.in_error && std::isfinite(e.error); });
-  };
-  return a.outcome.model == b.outcome.model && a.outcome.seeds == b.outcome.seeds && physical(a) == physical(b) &&
-         shown(a) == shown(b);
+  return a.outcome.model == b.outcome.model && a.outcome.seeds == b.outcome.seeds && physical(a) == physical(b);
 }
 
-/// All but noise and reached, for which it takes the other settings.
+/// Number of the quantities that count and that the setting shows.
+std::ptrdiff_t shown(const SettingResult& r) {
+  return std::count_if(r.errors.begin(), r.errors.end(),
+                       [](const QuantityError& e) { return e.in_error && std::isfinite(e.error); });
+}
+
+/// The quantities alone.
 SettingResult compare_setting(const SettingOutcome& setting, const SettingOutcome& reference) {
   SettingResult result{setting, {}, kMissing, kMissing, kMissing, kMissing, kMissing, kMissing, {}, {}};
-  double errors = 0, floors = 0, samplings = 0;
-  int counted = 0;
   const bool paired = !setting.compared_with.empty();
   for (const StudyQuantity& theirs : paired ? setting.compared_with : reference.quantities) {
     const auto found = std::find_if(setting.quantities.begin(), setting.quantities.end(),
                                     [&](const StudyQuantity& q) { return q.name == theirs.name; });
-    const QuantityError e = compare(found == setting.quantities.end() ? StudyQuantity{} : *found, setting.seeds, theirs,
-                                    paired ? setting.seeds : reference.seeds);
-    result.errors.push_back(e);
-    if (!e.in_error || !std::isfinite(e.error)) continue;
-    errors += e.error * e.error;
-    floors += e.standard_error * e.standard_error;
-    samplings += e.sampling * e.sampling;
-    ++counted;
+    result.errors.push_back(compare(found == setting.quantities.end() ? StudyQuantity{} : *found, setting.seeds, theirs,
+                                    paired ? setting.seeds : reference.seeds));
   }
-  if (counted == 0) return result;
-  result.error = std::sqrt(errors / counted);
-  result.floor = std::sqrt(floors / counted);
-  result.sampling = std::sqrt(samplings / counted);
   return result;
 }
 
-double pooled_sampling(const SettingResult& one, const std::vector<SettingResult>& all) {
+/// Root mean square of `value` over the settings that scatter like `one`, as far as it is finite.
+double pooled(const SettingResult& one, const std::vector<SettingResult>& all,
+              const std::function<double(const SettingResult&)>& value) {
   double squares = 0;
   int count = 0;
   for (const SettingResult& other : all) {
-    if (!scatters_alike(one, other) || !std::isfinite(other.sampling)) continue;
-    squares += other.sampling * other.sampling;
+    const double x = scatters_alike(one, other) ? value(other) : kMissing;
+    if (!std::isfinite(x)) continue;
+    squares += x * x;
     ++count;
   }
   return count > 0 ? std::sqrt(squares / count) : kMissing;
 }
 
-/// All settings beside the first.
-std::vector<SettingResult> compared(const std::vector<SettingOutcome>& outcomes, Packings packings) {
+/// Error, floor and sampling: root mean squares over what counts, each over its unit.
+void sum_up(SettingResult& result, const std::function<double(const QuantityError&)>& unit) {
+  double errors = 0, floors = 0, samplings = 0;
+  int counted = 0;
+  for (const QuantityError& e : result.errors) {
+    if (!e.in_error || !std::isfinite(e.error) || !(unit(e) > 0)) continue;
+    const double square = unit(e) * unit(e);
+    errors += e.error * e.error / square;
+    floors += e.standard_error * e.standard_error / square;
+    samplings += e.sampling * e.sampling / square;
+    ++counted;
+  }
+  if (counted == 0) return;
+  result.error = std::sqrt(errors / counted);
+  result.floor = std::sqrt(floors / counted);
+  result.sampling = std::sqrt(samplings / counted);
+}
+
+/// Standard error of quantity `q`, pooled; the reference differs from itself by nothing, which is no chance.
+double chance_of(std::size_t q, const SettingResult& one, const std::vector<SettingResult>& all) {
+  return pooled(one, all, [q](const SettingResult& r) {
+    const double standard_error = r.errors[q].standard_error;
+    return standard_error > 0 ? standard_error : kMissing;
+  });
+}
+
+double pooled_sampling(const SettingResult& one, const std::vector<SettingResult>& all) {
+  return pooled(one, all, [&](const SettingResult& r) { return shown(r) == shown(one) ? r.sampling : kMissing; });
+}
+
+/// All settings beside the first. `whole`: results of all packings, whose units stay; none: these are they.
+std::vector<SettingResult> compared(const std::vector<SettingOutcome>& outcomes, Packings packings,
+                                    const std::vector<SettingResult>* whole = nullptr) {
   std::vector<SettingResult> results;
   for (const SettingOutcome& outcome : outcomes) results.push_back(compare_setting(outcome, outcomes.front()));
+  const bool given = packings == Packings::given;
+  for (std::size_t i = 0; given && i < results.size(); ++i) {
+    for (std::size_t q = 0; q < results[i].errors.size(); ++q)
+      results[i].errors[q].chance = whole != nullptr ? (*whole)[i].errors[q].chance : chance_of(q, results[i], results);
+  }
   for (SettingResult& r : results) {
-    r.noise = packings == Packings::given ? r.floor : pooled_sampling(r, results);
+    sum_up(r, [given](const QuantityError& e) { return given ? e.chance : 1.0; });
+    if (given && std::isfinite(r.error)) r.floor = 1;  // pooled, in units of itself
+  }
+  for (SettingResult& r : results) {
+    r.noise = given ? r.floor : pooled_sampling(r, results);
     r.reached = std::hypot(std::sqrt(std::max(r.error * r.error - r.floor * r.floor, 0.0)), r.noise);
   }
   return results;
@@ -213,7 +246,7 @@ SettingsStudy study_of(const std::string& kind, const std::string& error, Packin
   for (const std::uint64_t seed : seeds) {
     std::vector<SettingOutcome> rest;
     for (const SettingOutcome& outcome : outcomes) rest.push_back(without(outcome, seed));
-    left_out.push_back({seed, compared(rest, packings)});
+    left_out.push_back({seed, compared(rest, packings, &study.results)});
   }
   for (std::size_t i = 0; i < study.results.size(); ++i) {
     std::vector<double> reached;

@@ -5,10 +5,13 @@
 // error^2 - floor^2 estimates the square of what the setting itself does. The noise that comes on top is the floor where all
 // settings have the same packings, of which only differences count, and sampling where packings are chosen, too: the interval
 // is all that users of the setting have, and few packings do not know their own scatter (two: t = 12.7). Nor does a time step or
-// a rate change how packings scatter: among settings that differ only in how they compute, sampling is pooled (root mean square),
-// lest a setting dominate by a scatter that happens to come out small. A setting whose energy residual comes nearer than half to the
-// one that stops a run dominates none that keeps away: its next data set may not be finished. Costs are counted in particle-steps;
-// seconds are beside them.
+// a rate change how packings scatter: among settings that differ only in how they compute, floor and sampling are pooled (root mean
+// square), lest a setting dominate by a scatter that happens to come out small.
+// With the same packings each quantity counts in units of its own chance, its standard error pooled likewise: P_star is known to 1 %
+// where F_max is to 10 and a rate beta to 30, and among relative errors the chance of the last would be all that is seen. The floor
+// is one by definition, and an error of two is twice what chance does. Where packings are chosen errors are relative.
+// A setting whose energy residual comes nearer than half to the one that stops a run dominates none that keeps away: its next data set
+// may not be finished. Costs are counted in particle-steps; seconds are beside them.
 // What is reached is known as well as a few packings tell. A cheaper setting dominates where its reached^2 is less beyond chance: by t
 // errors of the difference, t for one in twenty verdicts on a setting however many are cheaper. That error is the jackknife's, each
 // packing left out in turn of all settings that have it, and 2 floor^4 of both; the squares are those before max(), or chance below
@@ -62,10 +65,11 @@ struct SettingOutcome {
 
 struct SettingResult {
   SettingOutcome outcome;
-  std::vector<QuantityError> errors;                                  ///< the reference's quantities
-  double error = 0, floor = 0, sampling = 0, noise = 0, reached = 0;  ///< NaN where it shows none of them [-]
-  double reached_error = 0;                       ///< of `reached`, by the jackknife; NaN with fewer than three packings [-]
-  std::vector<std::string> dominated_by;          ///< settings that cost less and reach less, beyond chance
+  std::vector<QuantityError> errors;  ///< the reference's quantities
+  double error = 0, floor = 0, sampling = 0, noise = 0,
+         reached = 0;                     ///< relative or over chance; NaN where it shows nothing [-]
+  double reached_error = 0;               ///< of `reached`, by the jackknife; NaN with fewer than three packings [-]
+  std::vector<std::string> dominated_by;  ///< settings that cost less and reach less, beyond chance
   std::vector<std::string> perhaps_dominated_by;  ///< that cost less and reach as much or less, by what may be chance
 };
 

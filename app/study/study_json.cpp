@@ -12,7 +12,8 @@ OrderedJson quantity_to_json(const QuantityError& e) {
           {"error", number_or_null(e.error)},
           {"standard_error", number_or_null(e.standard_error)},
           {"half_width", number_or_null(e.half_width)},
-          {"sampling", number_or_null(e.sampling)}};
+          {"sampling", number_or_null(e.sampling)},
+          {"chance", number_or_null(e.chance)}};
 }
 
 OrderedJson result_to_json(const SettingResult& r) {

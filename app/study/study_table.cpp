@@ -14,12 +14,15 @@ constexpr std::size_t kNote = 120;  // characters; study.json has them all
 
 std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.2f}%", 100 * share) : "-"; }
 
-std::string line_of(const SettingResult& r, std::size_t width) {
+std::string line_of(const SettingResult& r, Packings packings, std::size_t width) {
   const SettingOutcome& o = r.outcome;
+  const auto error = [packings](double x) {
+    return packings == Packings::chosen || !std::isfinite(x) ? percent(x) : fmt::format("{:.2f}", x);
+  };
   std::string text = fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}", o.name,
                                  width, o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds,
-                                 percent(r.error), percent(r.floor), percent(r.sampling), percent(r.reached),
-                                 percent(r.reached_error), percent(o.energy_residual));
+                                 error(r.error), error(r.floor), error(r.sampling), error(r.reached),
+                                 error(r.reached_error), percent(o.energy_residual));
   if (near_the_stop(o.energy_residual)) text += "  near the energy balance's stop";
   if (!r.dominated_by.empty()) text += "  dominated";
   if (!o.model.empty()) text += "  " + o.model;
@@ -50,7 +53,8 @@ std::string study_table(const SettingsStudy& study) {
   std::string text =
       fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
                   "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached", "+-", "energy");
-  for (const SettingResult& r : study.results) text += line_of(r, width);
+  for (const SettingResult& r : study.results) text += line_of(r, study.packings, width);
+  if (study.packings == Packings::given) text += "errors in units of the packings' chance\n";
   return text + verdict_of(study.results.at(study.judged));
 }
 

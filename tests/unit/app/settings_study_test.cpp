@@ -22,23 +22,70 @@ SettingOutcome outcome(const std::string& name, double cost, double error, doubl
   return {name, {}, {cost, 0, 0}, seeds, {number("a", 1 + error), number("b", 1 - error)}, {}, 0, "", ""};
 }
 
-TEST(SettingsStudy, NoiseIsTheFloorOfGivenPackingsAndTheSamplingOfChosenOnes) {
+TEST(SettingsStudy, WhatReachesAddsTheSamplingOfChosenPackings) {
   const SettingOutcome reference = outcome("reference", 9, 0, 0.03, {1, 2});
-  const auto result = [&](const SettingOutcome& setting, Packings packings) {
-    return study_of("chain", "", packings, {}, {reference, setting}, 1).results[1];
+  const auto result = [&](const SettingOutcome& setting) {
+    return study_of("chain", "", Packings::chosen, {}, {reference, setting}, 1).results[1];
   };
-  for (const Packings packings : {Packings::given, Packings::chosen}) {
-    const SettingResult r = result(outcome("x", 1, 0.05, 0.04, {8, 9}), packings);
-    EXPECT_NEAR(r.error, 0.05, 1e-14);
-    EXPECT_NEAR(r.floor, 0.05, 1e-14);  // of .03 and .04, other packings
-    EXPECT_NEAR(r.sampling, student_95(1) * 0.04, 1e-12);
-    EXPECT_EQ(r.noise, packings == Packings::given ? r.floor : r.sampling);
-    // all of the error may be chance
-    EXPECT_NEAR(r.reached, r.noise, 1e-9);
-  }
-  const SettingResult paired = result(outcome("x", 1, 0.05, 0.04, {1, 2}), Packings::given);
+  const SettingResult r = result(outcome("x", 1, 0.05, 0.04, {8, 9}));
+  EXPECT_NEAR(r.error, 0.05, 1e-14);
+  EXPECT_NEAR(r.floor, 0.05, 1e-14);  // of .03 and .04, other packings
+  EXPECT_NEAR(r.sampling, student_95(1) * 0.04, 1e-12);
+  EXPECT_NEAR(r.reached, r.sampling, 1e-9) << "all of the error may be chance";
+  EXPECT_TRUE(std::isnan(r.errors[0].chance));
+  const SettingResult paired = result(outcome("x", 1, 0.05, 0.04, {1, 2}));
   EXPECT_NEAR(paired.floor, 0.01, 1e-14);
-  EXPECT_NEAR(paired.reached, std::hypot(std::sqrt(0.0025 - 0.0001), 0.01), 1e-14);
+  EXPECT_NEAR(paired.reached, std::hypot(std::sqrt(0.0025 - 0.0001), paired.noise), 1e-14);
+}
+
+/// `a` known to .01, `b` to .1; two standard errors off in one of them.
+SettingOutcome unequal(const std::string& name, double cost, double off_a, double off_b,
+                       const std::vector<std::uint64_t>& seeds) {
+  const auto n = static_cast<double>(seeds.size());
+  const auto number = [&](const char* q, double x, double scatter) {
+    return StudyQuantity{q, Eigen::VectorXd::Constant(1, x),
+                         Eigen::MatrixXd::Constant(1, static_cast<Eigen::Index>(seeds.size()), scatter / std::sqrt(n)),
+                         true};
+  };
+  return {name, {}, {cost, 0, 0}, seeds, {number("a", 1 + off_a, 0.01), number("b", 1 + off_b, 0.1)}, {}, 0, "", ""};
+}
+
+// Of given packings what is known to 1 % counts as much as what is known to 10.
+TEST(SettingsStudy, ErrorsOfGivenPackingsAreInUnitsOfTheirChance) {
+  const std::vector<std::uint64_t> seeds{1, 2, 3};
+  const SettingOutcome reference = outcome("reference", 9, 0, 0, seeds);
+  const SettingsStudy study = study_of("dem", "", Packings::given, {},
+                                       {reference, unequal("base", 4, 0, 0, seeds), unequal("a off", 3, 0.03, 0, seeds),
+                                        unequal("b off", 2, 0, 0.3, seeds)},
+                                       1);
+  for (const SettingResult& r : {study.results[2], study.results[3]}) {
+    EXPECT_NEAR(r.errors[0].chance, 0.01, 1e-14);
+    EXPECT_NEAR(r.errors[1].chance, 0.1, 1e-14);
+    EXPECT_NEAR(r.error, std::sqrt((9 + 0) / 2.0), 1e-12) << r.outcome.name;
+    EXPECT_EQ(r.floor, 1);
+    EXPECT_EQ(r.noise, 1);
+    EXPECT_NEAR(r.reached, r.error, 1e-12) << r.outcome.name;
+  }
+  EXPECT_NEAR(study.results[1].reached, 1, 1e-14) << "no error is seen below chance";
+  EXPECT_TRUE(study.results[1].perhaps_dominated_by.empty());
+}
+
+// The chance is that of all settings which only compute otherwise: sqrt((.02^2 + .04^2)/2).
+TEST(SettingsStudy, GivenPackingsShareTheirChance) {
+  const std::vector<std::uint64_t> seeds{1, 2, 3};
+  SettingOutcome coarse = outcome("coarse", 1, 0.06, 0.04, seeds), silent = coarse;
+  coarse.changes = {{"time_step_fraction", 0.2}};
+  silent.quantities.pop_back();
+  const SettingsStudy study =
+      study_of("dem", "", Packings::given, {},
+               {outcome("reference", 9, 0, 0, seeds), outcome("base", 2, 0.06, 0.02, seeds), coarse, silent}, 1);
+  const double of_a = std::sqrt((0.0004 + 0.0016 + 0.0016) / 3), of_b = std::sqrt((0.0004 + 0.0016) / 2);
+  for (const std::size_t i : {1, 2}) {
+    EXPECT_NEAR(study.results[i].errors[0].chance, of_a, 1e-14);
+    EXPECT_NEAR(study.results[i].errors[1].chance, of_b, 1e-14);
+    EXPECT_NEAR(study.results[i].error, 0.06 * std::sqrt((1 / (of_a * of_a) + 1 / (of_b * of_b)) / 2), 1e-12);
+  }
+  EXPECT_NEAR(study.results[3].error, 0.06 / of_a, 1e-12) << "of what it shows";
 }
 
 // How far packings lie apart is theirs, not the time step's: sqrt((.02^2 + .04^2)/2) of both, t standard errors each.
@@ -111,7 +158,7 @@ TEST(SettingsStudy, WhatShowsLessDominatesNothing) {
   half.quantities.pop_back();
   const auto base = outcome("base", 4, 0.02, 0.001, seeds), reference = outcome("reference", 9, 0, 0, seeds);
   const SettingsStudy study = study_of("dem", "", Packings::given, {}, {reference, base, half}, 1);
-  EXPECT_NEAR(study.results[2].error, 0.001, 1e-14);
+  EXPECT_NEAR(study.results[2].error, 1, 1e-12) << "in units of chance";
   EXPECT_TRUE(study.results[1].dominated_by.empty());
   half.quantities.clear();
   EXPECT_TRUE(std::isnan(study_of("dem", "", Packings::given, {}, {reference, half}, 1).results[1].reached));
@@ -151,9 +198,8 @@ TEST(SettingsStudy, ADifferenceWithinChanceIsNoDomination) {
     const SettingResult& judged = study.results[1];
     EXPECT_EQ(judged.dominated_by, size < 0.01 ? Names{"cheap"} : Names{}) << size;
     EXPECT_EQ(judged.perhaps_dominated_by, size < 0.01 ? Names{} : Names{"cheap"}) << size;
-    // the jackknife of sqrt(d^2 - s^2 + s^2) = |d|, of which d is a mean
-    const double s = std::sqrt((size * scatter).squaredNorm() / 12);
-    EXPECT_NEAR(judged.reached_error, s, size < 0.01 ? 1e-12 : 0.2 * s) << size;
+    // the jackknife of |d| over its standard error, of which d is a mean
+    EXPECT_NEAR(judged.reached_error, 1, size < 0.01 ? 1e-9 : 0.2) << size;
   }
   // An error below its floor says nothing: a coarser step with the same packings, off by nothing on the average, is no better than the
   // reference's own settings, whose error is none by definition.
@@ -166,11 +212,12 @@ TEST(SettingsStudy, ADifferenceWithinChanceIsNoDomination) {
   EXPECT_EQ(same.dominated_by, Names{});
   EXPECT_EQ(same.perhaps_dominated_by, Names{"coarse"});
   // two packings do not know
-  const SettingsStudy few = study_of(
-      "dem", "", Packings::given, {},
-      {of_packings("reference", 9, reference.head(2), {1, 2}), of_packings("base", 4, reference.head(2) * 1.02, {1, 2}),
-       of_packings("cheap", 3, reference.head(2) * 1.01, {1, 2})},
-      1);
+  const Eigen::RowVectorXd two = reference.head(2), scatter_of_two = 0.0005 * scatter.head(2);
+  const SettingsStudy few =
+      study_of("dem", "", Packings::given, {},
+               {of_packings("reference", 9, two, {1, 2}), of_packings("base", 4, two * 1.02 + scatter_of_two, {1, 2}),
+                of_packings("cheap", 3, two * 1.01 + scatter_of_two, {1, 2})},
+               1);
   EXPECT_EQ(few.results[1].perhaps_dominated_by, Names{"cheap"});
   EXPECT_TRUE(std::isnan(few.results[1].reached_error));
 }
