@@ -8,6 +8,7 @@
 #   PATH.memory.K.s, .F                strain to the sign change in segment K, law over DEM minus 1
 #   PATH.memory.K.dip                  least P* of segment K over that at its corner, law minus DEM
 #   PATH.RUNG.P_star.largest           of a cyclic path: largest difference of P* in any row, over the largest P* of DEM
+#   PATH.memory.*.chance               of a cyclic path's figures, standard error over its packings
 #   dilatancy.RUNG.NU                  rise of P* in D2 at constant volume, law (from its own start) minus DEM
 # Bounds are the goals of the memory rung; the other rungs are stated.
 set -euo pipefail
@@ -44,26 +45,44 @@ held_out() { # folder of a prediction
                   | "\($c.model) \(.quantity) \(.bias) \(.normalised_rms) \(.coverage_mean) \(.coverage_single)"' "$1/comparison.json")
 }
 
-# Of the means over seeds, row by row.
-largest_difference_of_pressure() { # folder rung
+# Of the means over seeds, row by row; `laws` and `runs`: CSVs of the law and of DEM, by seed.
+largest_difference_of_pressure() {
   awk -F, 'FNR == 1 { row = 0; dem = FILENAME ~ /\/dem\//; for (i = 1; i <= NF; i++) column[$i] = i; next }
            { P[dem, row++] += $column["P_star"]; if (row > rows) rows = row }
            END { for (k = 0; k < rows; k++) { d = P[0, k] - P[1, k]; if (d < 0) d = -d; if (d > worst) worst = d; if (P[1, k] > top) top = P[1, k] }
-                 print worst / top }' "$1/$2"-measured-s*.csv "$1"/dem/*.csv
+                 print worst / top }' "${laws[@]}" "${runs[@]}"
+}
+
+# NAME VALUE of what a cyclic path is judged by.
+cyclic_figures() {
+  echo "P_star.largest $(largest_difference_of_pressure)"
+  paste -d' ' <(awk -f tests/acceptance/reversals.awk "${laws[@]}") <(awk -f tests/acceptance/reversals.awk "${runs[@]}") |
+    awk '{ printf "%d.s %.4f\n%d.F %.4f\n%d.dip %.5f\n", $2, $4 / $12 - 1, $2, $6 / $14 - 1, $2, $8 - $16 }'
+}
+
+# The same figures' standard errors over the packings of the path: the jackknife, each left out in turn.
+chance_of_cyclic_figures() {
+  local all_laws=("${laws[@]}") all_runs=("${runs[@]}") laws runs k
+  for ((k = 0; k < ${#all_runs[@]}; k++)); do
+    laws=("${all_laws[@]:0:k}" "${all_laws[@]:k+1}") runs=("${all_runs[@]:0:k}" "${all_runs[@]:k+1}")
+    cyclic_figures
+  done | awk '{ n[$1]++; sum[$1] += $2; squares[$1] += $2 * $2 }
+    END { for (name in n) { m = sum[name] / n[name]; v = (squares[name] / n[name] - m * m) * (n[name] - 1); print name, sqrt(v > 0 ? v : 0) } }' | sort
 }
 
 reversals() { # folder of a prediction
-  local path rung name value bound
+  local path rung name value bound laws runs=("$1"/dem/*.csv)
   path=$(basename "$1")
   for rung in evolution memory; do
-    figure "$path.$rung.P_star.largest" "$(largest_difference_of_pressure "$1" "$rung")" "$(if [[ $rung == memory ]]; then echo "<=0.03"; else echo stated; fi)"
+    laws=("$1/$rung"-measured-s*.csv)
     while read -r name value; do
       bound=stated
-      if [[ $rung == memory ]]; then case $name in *.dip) bound="<=0.03" ;; *) bound="<=0.15" ;; esac; fi
-      if [[ $bound == stated ]]; then figure "$path.$rung.$name" "$value" stated
+      if [[ $rung == memory ]]; then case $name in *.largest | *.dip) bound="<=0.03" ;; *) bound="<=0.15" ;; esac; fi
+      if [[ $bound == stated || $name == *.largest ]]; then figure "$path.$rung.$name" "$value" "$bound"
       else figure "$path.$rung.|$name|" "$(magnitude "$value")" "$bound"; fi
-    done < <(paste -d' ' <(awk -f tests/acceptance/reversals.awk "$1/$rung"-measured-s*.csv) <(awk -f tests/acceptance/reversals.awk "$1"/dem/*.csv) |
-      awk '{ printf "%d.s %.4f\n%d.F %.4f\n%d.dip %.5f\n", $2, $4 / $12 - 1, $2, $6 / $14 - 1, $2, $8 - $16 }')
+    done < <(cyclic_figures)
+    if [[ $rung == evolution ]]; then continue; fi
+    while read -r name value; do figure "$path.$rung.$name.chance" "$value" stated; done < <(chance_of_cyclic_figures)
   done
 }
 
