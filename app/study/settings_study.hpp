@@ -65,9 +65,8 @@ struct SettingOutcome {
 
 struct SettingResult {
   SettingOutcome outcome;
-  std::vector<QuantityError> errors;  ///< the reference's quantities
-  double error = 0, floor = 0, sampling = 0, noise = 0,
-         reached = 0;                     ///< relative or over chance; NaN where it shows nothing [-]
+  std::vector<QuantityError> errors;                                  ///< the reference's quantities
+  double error = 0, floor = 0, sampling = 0, noise = 0, reached = 0;  ///< NaN where nothing is shown [-]
   double reached_error = 0;               ///< of `reached`, by the jackknife; NaN with fewer than three packings [-]
   std::vector<std::string> dominated_by;  ///< settings that cost less and reach less, beyond chance
   std::vector<std::string> perhaps_dominated_by;  ///< that cost less and reach as much or less, by what may be chance

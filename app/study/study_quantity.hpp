@@ -30,8 +30,7 @@ struct QuantityError {
   double standard_error = 0;  ///< of `error`, from the scatter over packings [-]
   double half_width = 0;      ///< likewise, of its 95 % interval: Student's t for the setting with fewer packings [-]
   double sampling = 0;        ///< half width of the 95 % interval of the values themselves, relative as `error` [-]
-  double chance =
-      kMissing;  ///< standard error pooled over settings that scatter alike, unit of an error over chance [-]
+  double chance = kMissing;   ///< standard error pooled over settings that scatter alike: a unit of errors [-]
 };
 
 /// The same without the packing of column `c`, to first order (exactly where a value is the mean of the packings); not shown with
