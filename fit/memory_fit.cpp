@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMemoryParameters = 8;
 using MemoryJet = ceres::Jet<double, kMemoryParameters>;
-constexpr double kVagueParameter = 0.5;  // relative error, of what a parameter acts on, beyond which it is no number
+constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number
 constexpr double kWindowRounding = 1e-9;
 const std::vector<std::string> kGivenToMemory{"coordination",        "rattlers",        "pressure",
                                               "steady_coordination", "steady_rattlers", "steady_pressure",
@@ -82,15 +82,14 @@ ResidualBlock memory_block(const Trajectory& t, const LawParameters<double>& fix
   return block;
 }
 
-/// The share of the fabric that lags behind stress; 0 where none of it may, kappa being on its bound or within its 95 % interval of it.
-/// The rate lambda at which it follows needs to be known only as far as that matters.
-double lagging_share(const StageFit& fit) {
+/// Whether none of the fabric may lag, kappa being on its bound or within its 95 % interval of it: then the rate lambda at which it
+/// follows need not be known.
+bool lag_may_be_none(const StageFit& fit) {
   for (const auto& [name, kappa] : fit.stage.estimates) {
-    if (name != "memory.kappa") continue;
-    const bool may_be_none = !(kappa.value + kappa.half_width() < parameter_table()[parameter_index(name)].upper);
-    return may_be_none ? 0 : 1 - kappa.value;
+    if (name == "memory.kappa")
+      return !(kappa.value + kappa.half_width() < parameter_table()[parameter_index(name)].upper);
   }
-  return 1;
+  return false;
 }
 
 std::string memory_window(const CalibrationOptions& options) {
@@ -136,15 +135,15 @@ StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<d
         },
         options.threads, fit);
     const auto field = fields(law);
-    const double lags = lagging_share(fit);
+    const bool may_not_lag = lag_may_be_none(fit);
     for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
       const std::string& name = problem.parameters[k].name;
       const double value = fit.solution.x(static_cast<Eigen::Index>(k));
       *field[parameter_index(name)] = value;
       const double error = fit.stage.estimates[k].estimate.standard_error;
-      const bool may_be_none = name == "memory.chi" || name == "memory.kappa";
-      const double matters = may_be_none ? 0 : name == "memory.lambda" ? lags : 1;
-      if (matters * error > kVagueParameter * std::abs(value))
+      const bool may_be_vague = name == "memory.chi" || name == "memory.kappa" ||  // both may be none
+                                (name == "memory.lambda" && may_not_lag);
+      if (!may_be_vague && error > kVagueParameter * std::abs(value))
         fit.mark_not_identified(
             name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
                       (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));

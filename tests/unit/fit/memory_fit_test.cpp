@@ -74,8 +74,8 @@ TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
   EXPECT_EQ(estimate(fit, "memory.k").status, Status::fitted);
 }
 
-// The less of the fabric lags behind stress, the less it matters at what rate.
-TEST(MemoryFit, TheRateOfALagNeedsToBeKnownOnlyAsFarAsItMatters) {
+// Where all of the fabric may follow stress at once, nobody asks at what rate the rest follows.
+TEST(MemoryFit, TheRateOfALagThatMayBeNoneNeedNotBeKnown) {
   LawParameters<double> truth = memory_truth();
   SyntheticOptions options = of_memory();
   options.noise_s = options.noise_F = 0.01;
