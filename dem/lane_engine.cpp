@@ -115,6 +115,15 @@ void refresh_rows(const Simulation& sim, Lanes<Real>& lanes) {
   for_each_block_of_groups(sim, lanes, [&](std::size_t, std::size_t begin, std::size_t end) { write_rows(lanes, step, begin, end); });
 }
 
+/// Brings the groups up to their rows, where steps have left them behind.
+template <class Real>
+void take_rows_of(const Simulation& sim, Lanes<Real>& lanes) {
+  if (!lanes.rows_ahead) return;
+  for_each_block_of_groups(sim, lanes, [&](std::size_t, std::size_t begin, std::size_t end) { take_rows(lanes, begin, end); });
+  lanes.rows_ahead = false;
+  lanes.predicted = true;
+}
+
 }  // namespace
 
 bool moves_as_lanes_do(const CellMotion& motion) {
@@ -149,8 +158,9 @@ Drifted drift_lanes(Simulation& sim, const CellMotion& half) {
   });
 }
 
-bool list_still_holds(const Simulation& sim) {
-  return with_lanes(sim, [&]<class Real>(const Lanes<Real>& lanes) {
+bool list_still_holds(Simulation& sim) {
+  return with_lanes(sim, [&]<class Real>(Lanes<Real>& lanes) {
+    take_rows_of(sim, lanes);
     LaneStep step = step_of(sim, lanes);
     step.edge = edges(sim.state.packing.H, lanes.unit);
     const double most = allowed(sim, lanes, left_for_near(sim));
@@ -166,6 +176,7 @@ bool list_still_holds(const Simulation& sim) {
 void repick_near(Simulation& sim) {
   sim.near_H = sim.state.packing.H;
   with_lanes(sim, [&](auto& lanes) {
+    take_rows_of(sim, lanes);
     const std::array<double, 3> edge = edges(sim.near_H, lanes.unit);
     const double skin = sim.list.skin / lanes.unit.length, dt = sim.dt / lanes.unit.time;
     const double steps = sim.near_step < 0 ? 0 : static_cast<double>(sim.state.step - sim.near_step);
@@ -182,6 +193,7 @@ void repick_near(Simulation& sim) {
 
 void rearrange_lanes(Simulation& sim) {
   with_lanes(sim, [&](auto& lanes) {
+    take_rows_of(sim, lanes);
     const double length = lanes.unit.length;
     arrange(lanes, edges(sim.state.packing.H, lanes.unit), sim.list.skin / length, left_for_near(sim) / length, *sim.team);
     refresh_rows(sim, lanes);
@@ -197,6 +209,7 @@ PassSums kick_lanes(Simulation& sim, const CellMotion& end) {
     for_each_block_of_groups(sim, lanes, [&](std::size_t block, std::size_t first, std::size_t last) {
       parts[block] = force_and_kick(lanes, step, first, last);
     });
+    lanes.rows_ahead = lanes.predicted = false;
     return in_SI(sum_of(parts), sim, lanes.unit);
   });
 }
@@ -210,14 +223,26 @@ KickAndDrift kick_and_drift_lanes(Simulation& sim, const CellMotion& end, const 
       parts[block] = force_kick_drift(lanes, step, next, first, last, how[block]);
     });
     std::swap(lanes.row, lanes.next_row);
+    lanes.rows_ahead = true;
     return KickAndDrift{in_SI(sum_of(parts), sim, lanes.unit), *std::max_element(how.begin(), how.end())};
   });
 }
 
 void read_lanes(Simulation& sim) {
-  with_lanes(sim, [&](const auto& lanes) {
+  with_lanes(sim, [&](auto& lanes) {
+    take_rows_of(sim, lanes);
     store_lanes(lanes, sim.state);
     sim.state.sums.E_pot = 0.25 * sim.state.material.stiffness * sum_squared_overlaps(lanes, sim.state.packing.H);
+  });
+}
+
+void read_predicted(Simulation& sim) {
+  with_lanes(sim, [&](const auto& lanes) {
+    const double speed = lanes.unit.length / lanes.unit.time;
+    for (std::size_t t = 0; t < lanes.spheres; ++t) {
+      const auto& row = lanes.row[t];
+      sim.motion[lanes.listed[t / kLanes].sphere[t % kLanes]] = {row.vx * speed, row.vy * speed, row.vz * speed, 0};
+    }
   });
 }
 

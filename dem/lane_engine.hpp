@@ -19,7 +19,7 @@ void enter_lanes(Simulation& sim);
 Drifted drift_lanes(Simulation& sim, const CellMotion& half);
 
 /// Whether all pairs that near ones are picked from are in the list.
-bool list_still_holds(const Simulation& sim);
+bool list_still_holds(Simulation& sim);
 
 /// New near ones, after that question, or a new list at the present positions, in the middle of a step.
 void repick_near(Simulation& sim);
@@ -36,7 +36,10 @@ struct KickAndDrift {
 };
 KickAndDrift kick_and_drift_lanes(Simulation& sim, const CellMotion& end, const CellMotion& half);
 
-/// Arrays and E_pot of the state from the lanes.
+/// Arrays and E_pot of the state from the lanes; in the middle of a step accelerations stay.
 void read_lanes(Simulation& sim);
+
+/// In the middle of a step: Simulation::motion from the rows.
+void read_predicted(Simulation& sim);
 
 }  // namespace grainlaw::dem

@@ -52,12 +52,12 @@ struct Spatial {
 template <class Real>
 Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin, ThreadTeam& team) {
   const std::size_t n = lanes.spheres;
-  const auto reach_of = [&](const SphereGroup<Real>& group, std::size_t l) {
+  const auto reach_of = [&](const PlacedGroup<Real>& group, std::size_t l) {
     return (static_cast<double>(group.radius[l]) + skin / 2) * (1 + kRounding);
   };
   Spatial s;
   double farthest = 0;
-  for (std::size_t i = 0; i < n; ++i) farthest = std::max(farthest, reach_of(lanes.group[i / kLanes], i % kLanes));
+  for (std::size_t i = 0; i < n; ++i) farthest = std::max(farthest, reach_of(lanes.placed[i / kLanes], i % kLanes));
   const double cutoff = 2 * farthest * (1 + kRounding);
   const double per_axis = std::cbrt(static_cast<double>(n)) + 1;
   for (std::size_t a = 0; a < 3; ++a) {
@@ -70,7 +70,7 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
   std::vector<std::uint32_t> bin(n);
   team.for_each_block(block_count(n), [&](std::size_t block) {
     for (std::size_t i = block * kBlockSize; i < std::min(n, (block + 1) * kBlockSize); ++i) {
-      const SphereGroup<Real>& group = lanes.group[i / kLanes];
+      const PlacedGroup<Real>& group = lanes.placed[i / kLanes];
       const std::size_t l = i % kLanes;
       bin[i] = static_cast<std::uint32_t>(s.at(s.bin_along(0, leading(group.x[l])), s.bin_along(1, leading(group.y[l])),
                                                s.bin_along(2, leading(group.z[l]))));
@@ -94,7 +94,7 @@ Spatial sort_spatially(const Lanes<Real>& lanes, const std::array<double, 3>& ed
       std::sort(first, last, [&](std::uint32_t p, std::uint32_t q) { return sphere_at(p) < sphere_at(q); });
     }
     for (std::size_t p = s.start[first_bin]; p < s.start[last_bin]; ++p) {
-      const SphereGroup<Real>& group = lanes.group[s.from[p] / kLanes];
+      const PlacedGroup<Real>& group = lanes.placed[s.from[p] / kLanes];
       const std::size_t l = s.from[p] % kLanes;
       s.sphere[p] = lanes.listed[s.from[p] / kLanes].sphere[l];
       s.x[p] = leading(group.x[l]);
@@ -214,18 +214,22 @@ Found search(const Spatial& s, float narrower, std::size_t begin, std::size_t en
 /// Sphere in lane i of the old group into lane j of the new one.
 template <class Real>
 void move_sphere(const SphereGroup<Real>& a, std::size_t i, SphereGroup<Real>& b, std::size_t j) {
-  b.x[j] = a.x[i];
-  b.y[j] = a.y[i];
-  b.z[j] = a.z[i];
   b.vx[j] = a.vx[i];
   b.vy[j] = a.vy[i];
   b.vz[j] = a.vz[i];
+  b.inverse_mass[j] = a.inverse_mass[i];
+  b.near_skin[j] = a.near_skin[i];
+}
+
+template <class Real>
+void move_sphere(const PlacedGroup<Real>& a, std::size_t i, PlacedGroup<Real>& b, std::size_t j) {
+  b.x[j] = a.x[i];
+  b.y[j] = a.y[i];
+  b.z[j] = a.z[i];
   b.ax[j] = a.ax[i];
   b.ay[j] = a.ay[i];
   b.az[j] = a.az[i];
   b.radius[j] = a.radius[i];
-  b.inverse_mass[j] = a.inverse_mass[i];
-  b.near_skin[j] = a.near_skin[i];
 }
 
 }  // namespace
@@ -263,11 +267,12 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
     }
   });
 
-  SphereGroup<Real> nobodies{};
-  std::fill(std::begin(nobodies.radius), std::end(nobodies.radius), Real{kNobodysRadius});
   std::vector<SphereGroup<Real>> group;
   reserve_on_large_pages(group, groups);
-  group.assign(groups, nobodies);
+  group.resize(groups);
+  PlacedGroup<Real> nobodies{};
+  std::fill(std::begin(nobodies.radius), std::end(nobodies.radius), Real{kNobodysRadius});
+  std::vector<PlacedGroup<Real>> placed(groups, nobodies);
   std::vector<ListedGroup<Real>> listed(groups);
   lanes.first_rung.assign(groups + 1, 0);
   for (std::size_t g = 0; g < groups; ++g) lanes.first_rung[g + 1] = lanes.first_rung[g] + rungs[g];
@@ -285,9 +290,10 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
         if (t >= n) continue;
         const std::size_t p = order[t], from = s.from[p];
         move_sphere(lanes.group[from / kLanes], from % kLanes, group[g], l);
-        listed[g].x[l] = group[g].x[l];
-        listed[g].y[l] = group[g].y[l];
-        listed[g].z[l] = group[g].z[l];
+        move_sphere(lanes.placed[from / kLanes], from % kLanes, placed[g], l);
+        listed[g].x[l] = placed[g].x[l];
+        listed[g].y[l] = placed[g].y[l];
+        listed[g].z[l] = placed[g].z[l];
         listed[g].sphere[l] = s.sphere[p];
       }
     }
@@ -298,8 +304,9 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   lanes.near_count.assign(groups, 0);
   lanes.frontier = (kReach[2] * n * s.stripe / (std::size_t{s.bins[1]} * s.bins[2]) + 4 * kBlockSize) / kLanes;
   constexpr std::size_t caches = 8 << 20;
-  lanes.beyond_caches = groups * sizeof(SphereGroup<Real>) > caches;
+  lanes.beyond_caches = groups * (sizeof(SphereGroup<Real>) + 2 * kLanes * sizeof(SphereRow<Real>)) > caches;
   lanes.group = std::move(group);
+  lanes.placed = std::move(placed);
   lanes.listed = std::move(listed);
   for (auto* row : {&lanes.row, &lanes.next_row}) {
     reserve_on_large_pages(*row, nobody + 1);

@@ -5,8 +5,10 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dem/lane_pass.cpp"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "dem/lane_drift-inl.hpp"
 #include "dem/lane_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,33 +56,20 @@ void write_rows_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
   const auto h = hn::Set(d, static_cast<Real>(step.half_dt));
   for (std::size_t g = begin; g < end; ++g) {
     const SphereGroup<Real>& own = lanes.group[g];
+    const PlacedGroup<Real>& placed = lanes.placed[g];
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const auto place = [&](const FixedPoint<Real>* x) { return hn::BitCast(d, hn::Load(di, x + o)); };
-      const auto predicted = [&](const Real* v, const Real* a) { return multiply_add(h, hn::Load(d, a + o), hn::Load(d, v + o)); };
+      const auto predicted = [&](const Real* v, const Real* a) {
+        const auto of_group = hn::Load(d, a + o);
+        return lanes.predicted ? of_group : multiply_add(h, of_group, hn::Load(d, v + o));
+      };
       auto* to = reinterpret_cast<Real*>(lanes.row.data() + g * kLanes + o);
-      const auto radius = hn::Load(d, own.radius + o);
-      store_rows(d, {place(own.x), place(own.y), place(own.z), hn::Add(radius, hn::Load(d, own.near_skin + o))}, to, 0);
-      store_rows(d, {predicted(own.vx, own.ax), predicted(own.vy, own.ay), predicted(own.vz, own.az), radius}, to, 4);
+      const auto radius = hn::Load(d, placed.radius + o);
+      store_rows<false>(d, {place(placed.x), place(placed.y), place(placed.z), hn::Add(radius, hn::Load(d, own.near_skin + o))},
+                        {predicted(own.vx, placed.ax), predicted(own.vy, placed.ay), predicted(own.vz, placed.az), radius}, to);
     }
   }
 }
-
-/// Squared distance from where spheres were, against the cell.
-template <class Real, bool portable>
-struct Moved2 {
-  using D = Tag<Real>;
-  using VI = hn::Vec<hn::RebindToSigned<D>>;
-  Edge<D, portable> ex, ey, ez;
-  explicit Moved2(const LaneStep& step) : ex(D(), step.edge[0]), ey(D(), step.edge[1]), ez(D(), step.edge[2]) {}
-  HWY_INLINE hn::Vec<D> operator()(VI x, VI y, VI z, const FixedPoint<Real>* x_0, const FixedPoint<Real>* y_0,
-                                   const FixedPoint<Real>* z_0) const {
-    const D d;
-    const hn::RebindToSigned<D> di;
-    const MultiplyAdd<portable> multiply_add;
-    const auto ux = ex(d, hn::Sub(x, hn::Load(di, x_0))), uy = ey(d, hn::Sub(y, hn::Load(di, y_0))), uz = ez(d, hn::Sub(z, hn::Load(di, z_0)));
-    return multiply_add(ux, ux, multiply_add(uy, uy, hn::Mul(uz, uz)));
-  }
-};
 
 template <bool portable, class Real>
 double farthest_moved2_on(const Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
@@ -89,84 +78,30 @@ double farthest_moved2_on(const Lanes<Real>& lanes, const LaneStep& step, std::s
   const Moved2<Real, portable> moved2(step);
   auto farthest2 = hn::Zero(d);
   for (std::size_t g = begin; g < end; ++g) {
-    const SphereGroup<Real>& own = lanes.group[g];
+    const PlacedGroup<Real>& now = lanes.placed[g];
     const ListedGroup<Real>& listed = lanes.listed[g];
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
-      farthest2 = hn::Max(farthest2, moved2(hn::Load(di, own.x + o), hn::Load(di, own.y + o), hn::Load(di, own.z + o), listed.x + o,
+      farthest2 = hn::Max(farthest2, moved2(hn::Load(di, now.x + o), hn::Load(di, now.y + o), hn::Load(di, now.z + o), listed.x + o,
                                             listed.y + o, listed.z + o));
     }
   }
   return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, farthest2)));
 }
 
-/// The first half of a step, a vector of spheres after the other: half kick, drift, rows.
-template <bool portable, class Real>
-class Drift {
-  using D = Tag<Real>;
-  using V = hn::Vec<D>;
-  static constexpr D d{};
-  static constexpr hn::RebindToSigned<D> di{};
-
- public:
-  explicit Drift(const LaneStep& step)
-      : h_(set(step.half_dt)), x_(set(step.drift[0])), y_(set(step.drift[1])), z_(set(step.drift[2])),
-        moved2_(step), allowed2_(square(step.allowed)), near_stretch_(set(step.near_stretch)), near_loss_(set(step.near_loss)), list_in_danger_(step.list_in_danger) {}
-
-  /// Spheres from lane o of group g on, with their accelerations and velocities; their rows go to `row`.
-  HWY_INLINE void operator()(Lanes<Real>& lanes, std::vector<SphereRow<Real>>& row, std::size_t g, std::size_t o, V ax, V ay, V az, V vx,
-                             V vy, V vz) {
-    const MultiplyAdd<portable> multiply_add;
-    SphereGroup<Real>& own = lanes.group[g];
-    vx = multiply_add(h_, ax, vx);
-    vy = multiply_add(h_, ay, vy);
-    vz = multiply_add(h_, az, vz);
-    hn::Store(vx, d, own.vx + o);
-    hn::Store(vy, d, own.vy + o);
-    hn::Store(vz, d, own.vz + o);
-    const V dx = hn::Mul(vx, x_), dy = hn::Mul(vy, y_), dz = hn::Mul(vz, z_);
-    sane_ = hn::And(sane_, hn::Lt(hn::Add(hn::Add(hn::Abs(dx), hn::Abs(dy)), hn::Abs(dz)), limit_));
-    const auto x = hn::Add(hn::Load(di, own.x + o), to_fixed(d, dx)), y = hn::Add(hn::Load(di, own.y + o), to_fixed(d, dy)),
-               z = hn::Add(hn::Load(di, own.z + o), to_fixed(d, dz));
-    hn::Store(x, di, own.x + o);
-    hn::Store(y, di, own.y + o);
-    hn::Store(z, di, own.z + o);
-    const ListedGroup<Real>& listed = lanes.listed[g];
-    if (list_in_danger_) listed_ = hn::And(listed_, hn::Lt(moved2_(x, y, z, listed.x + o, listed.y + o, listed.z + o), allowed2_));
-    const V near_skin = hn::Load(d, own.near_skin + o), near_allowed = hn::Max(hn::Sub(hn::Mul(near_stretch_, near_skin), near_loss_), hn::Zero(d));
-    near_ = hn::And(near_, hn::Lt(moved2_(x, y, z, own.near_x + o, own.near_y + o, own.near_z + o), hn::Mul(near_allowed, near_allowed)));
-    auto* to = reinterpret_cast<Real*>(row.data() + g * kLanes + o);
-    const V radius = hn::Load(d, own.radius + o);
-    store_rows(d, {hn::BitCast(d, x), hn::BitCast(d, y), hn::BitCast(d, z), hn::Add(radius, near_skin)}, to, 0);
-    store_rows(d, {multiply_add(h_, ax, vx), multiply_add(h_, ay, vy), multiply_add(h_, az, vz), radius}, to, 4);
-  }
-
-  Drifted how() const {
-    if (!hn::AllTrue(d, sane_)) return Drifted::lost;
-    if (!hn::AllTrue(d, listed_)) return Drifted::beyond_list;
-    return hn::AllTrue(d, near_) ? Drifted::well : Drifted::beyond_near;
-  }
-
- private:
-  static V set(double x) { return hn::Set(d, static_cast<Real>(x)); }
-  static V square(double allowed) { return set(allowed > 0 ? allowed * allowed : -1); }
-
-  V h_, x_, y_, z_;
-  Moved2<Real, portable> moved2_;
-  V allowed2_, near_stretch_, near_loss_;
-  bool list_in_danger_;
-  V limit_ = set(sizeof(Real) == 4 ? 0x1p29 : 0x1p49);
-  hn::Mask<D> sane_ = hn::Eq(limit_, limit_), listed_ = sane_, near_ = sane_;
-};
-
 template <bool portable, class Real>
 Drifted kick_and_drift_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
-  Drift<portable, Real> drift(step);
+  const hn::RebindToSigned<Tag<Real>> di;
+  Drift<portable, Real> drift(step, false);
   for (std::size_t g = begin; g < end; ++g) {
     const SphereGroup<Real>& own = lanes.group[g];
+    PlacedGroup<Real>& placed = lanes.placed[g];
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const auto at = [&](const Real* x) { return hn::Load(d, x + o); };
-      drift(lanes, lanes.row, g, o, at(own.ax), at(own.ay), at(own.az), at(own.vx), at(own.vy), at(own.vz));
+      const auto place = [&](const FixedPoint<Real>* x) { return hn::Load(di, x + o); };
+      store(di, drift(lanes, lanes.row, g, o, {place(placed.x), place(placed.y), place(placed.z)}, at(placed.radius),
+                      {at(placed.ax), at(placed.ay), at(placed.az)}, {at(own.vx), at(own.vy), at(own.vz)}),
+            placed.x + o, placed.y + o, placed.z + o);
     }
   }
   return drift.how();
@@ -185,7 +120,7 @@ HWY_INLINE V overlap_of(V rounded, V squared, V root, V inverse) {
   }
 }
 
-/// Second half of a step but for storing velocities: after(group, lane, a_x, a_y, a_z, v_x, v_y, v_z) gets each vector of spheres.
+/// Second half of a step but for storing anything: after(group, lane, place, radius, acceleration, velocity) gets each vector of spheres.
 template <bool portable, class Real, class After>
 LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end, const After& after) {
   const Tag<Real> d;
@@ -201,24 +136,24 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
   LaneTotals totals;
   fetch_rungs_from(lanes, end);
   for (std::size_t g = begin; g < end; ++g) {
-    SphereGroup<Real>& own = lanes.group[g];
+    const SphereGroup<Real>& own = lanes.group[g];
     const std::size_t first_rung = lanes.near_first[g], last_rung = first_rung + lanes.near_count[g];
     fetch_frontier(lanes, g);
     fetch_groups(lanes, g);
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
-      const auto x = hn::Load(di, own.x + o), y = hn::Load(di, own.y + o), z = hn::Load(di, own.z + o);
-      const V r = hn::Load(d, own.radius + o);
+      Quartet<Tag<Real>> at, moving;
+      load_rows(d, reinterpret_cast<const Real*>(lanes.row.data() + g * kLanes + o), at, moving);
+      const Axes<hn::Vec<decltype(di)>> here{hn::BitCast(di, at.a), hn::BitCast(di, at.b), hn::BitCast(di, at.c)};
+      const V r = moving.d;
       const V vx = hn::Load(d, own.vx + o), vy = hn::Load(d, own.vy + o), vz = hn::Load(d, own.vz + o);
-      const V wx = multiply_add(h, hn::Load(d, own.ax + o), vx), wy = multiply_add(h, hn::Load(d, own.ay + o), vy),
-              wz = multiply_add(h, hn::Load(d, own.az + o), vz);
       V fx = zero, fy = zero, fz = zero;        // force
       V gx = zero, gy = zero, gz = zero;        // its viscous part
       V box = zero, lost = zero;
       for (std::size_t rung = first_rung; rung < last_rung; ++rung) {
         const std::uint32_t* row = lanes.near_rung[rung].row + o;
         const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0), motion = gather_rows(d, rows, row, 4);
-        const V dx = ex(d, hn::Sub(x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(y, hn::BitCast(di, place.b))),
-                dz = ez(d, hn::Sub(z, hn::BitCast(di, place.c)));
+        const V dx = ex(d, hn::Sub(here.x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(here.y, hn::BitCast(di, place.b))),
+                dz = ez(d, hn::Sub(here.z, hn::BitCast(di, place.c)));
         const V squared = multiply_add(dz, dz, multiply_add(dy, dy, hn::Mul(dx, dx)));
         const V distance = hn::Sqrt(squared);
         const V rounded = hn::Sub(hn::Add(r, motion.d), distance);
@@ -227,8 +162,8 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
         const V delta = overlap_of<portable>(rounded, squared, distance, inverse);
         // u . x_ij, of the cell and with the spheres' own velocities
         const V cell = multiply_add(hn::Mul(Lz, dz), dz, multiply_add(hn::Mul(Ly, dy), dy, hn::Mul(hn::Mul(Lx, dx), dx)));
-        const V u = multiply_add(hn::Sub(wz, motion.c), dz,
-                                 multiply_add(hn::Sub(wy, motion.b), dy, multiply_add(hn::Sub(wx, motion.a), dx, cell)));
+        const V u = multiply_add(hn::Sub(moving.c, motion.c), dz,
+                                 multiply_add(hn::Sub(moving.b, motion.b), dy, multiply_add(hn::Sub(moving.a, motion.a), dx, cell)));
         const V viscous = hn::Mul(minus_gamma, hn::Mul(u, inverse));
         // force and viscous part over |x_ij|
         const V f = hn::IfThenElseZero(touching, hn::Mul(multiply_add(k, delta, viscous), inverse));
@@ -249,10 +184,7 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
               nz = hn::Mul(multiply_add(hm, fz, vz), damped);
       const V ax = hn::Mul(hn::Sub(fx, hn::Mul(gamma_b, nx)), inverse_mass), ay = hn::Mul(hn::Sub(fy, hn::Mul(gamma_b, ny)), inverse_mass),
               az = hn::Mul(hn::Sub(fz, hn::Mul(gamma_b, nz)), inverse_mass);
-      hn::Store(ax, d, own.ax + o);
-      hn::Store(ay, d, own.ay + o);
-      hn::Store(az, d, own.az + o);
-      after(g, o, ax, ay, az, nx, ny, nz);
+      after(g, o, here, r, Axes<V>{ax, ay, az}, Axes<V>{nx, ny, nz});
       // every contact is met twice: halves of what belongs to it, all of -sum F_v . v
       lost = multiply_add(set(0.5), lost, multiply_add(gz, nz, multiply_add(gy, ny, hn::Mul(gx, nx))));
       add_to(totals.box + o, d, box);
@@ -266,24 +198,24 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
 template <bool portable, class Real>
 LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
-  return forces_on<portable>(lanes, step, begin, end,
-                                     [&](std::size_t g, std::size_t o, auto, auto, auto, auto vx, auto vy, auto vz) {
-                                       SphereGroup<Real>& own = lanes.group[g];
-                                       hn::Store(vx, d, own.vx + o);
-                                       hn::Store(vy, d, own.vy + o);
-                                       hn::Store(vz, d, own.vz + o);
-                                     });
+  const hn::RebindToSigned<Tag<Real>> di;
+  return forces_on<portable>(lanes, step, begin, end, [&](std::size_t g, std::size_t o, auto place, auto, auto a, auto v) {
+    SphereGroup<Real>& own = lanes.group[g];
+    PlacedGroup<Real>& placed = lanes.placed[g];
+    store(di, place, placed.x + o, placed.y + o, placed.z + o);
+    store(d, a, placed.ax + o, placed.ay + o, placed.az + o);
+    store(d, v, own.vx + o, own.vy + o, own.vz + o);
+  });
 }
 
 template <bool portable, class Real>
 LaneSums force_kick_drift_on(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
                           Drifted& how) {
-  Drift<portable, Real> drift(next);
+  Drift<portable, Real> drift(next, lanes.beyond_caches);
   const LaneSums sums = forces_on<portable>(
       lanes, step, begin, end,
-      [&](std::size_t g, std::size_t o, auto ax, auto ay, auto az, auto vx, auto vy, auto vz) {
-        drift(lanes, lanes.next_row, g, o, ax, ay, az, vx, vy, vz);
-      });
+      [&](std::size_t g, std::size_t o, auto place, auto r, auto a, auto v) { drift(lanes, lanes.next_row, g, o, place, r, a, v); });
+  if (lanes.beyond_caches) hwy::FlushStream();
   how = drift.how();
   return sums;
 }

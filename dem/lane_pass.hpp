@@ -30,9 +30,21 @@ struct LaneSums {
   double v2 = 0;  ///< sum of squared velocities
 };
 
-/// Rows of the groups [begin, end) from positions and velocities, the latter predicted by dt/2.
+/// Rows of the groups [begin, end) from positions and velocities, the latter predicted by dt/2 (or as they were, Lanes::predicted).
 void write_rows(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 void write_rows(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
+
+/// The other way, after force_kick_drift(): positions, and predicted velocities in place of accelerations.
+template <class Real>
+void take_rows(Lanes<Real>& lanes, std::size_t begin, std::size_t end) {
+  for (std::size_t t = begin * kLanes; t < end * kLanes; ++t) {
+    PlacedGroup<Real>& own = lanes.placed[t / kLanes];
+    const SphereRow<Real>& row = lanes.row[t];
+    const std::size_t l = t % kLanes;
+    own.x[l] = row.x, own.y[l] = row.y, own.z[l] = row.z;
+    own.ax[l] = row.vx, own.ay[l] = row.vy, own.az[l] = row.vz;
+  }
+}
 
 enum class Drifted {
   well,
@@ -49,12 +61,12 @@ Drifted kick_and_drift(Lanes<double>& lanes, const LaneStep& step, std::size_t b
 double farthest_moved2(const Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 double farthest_moved2(const Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 
-/// Contact forces from the rows, then the second half kick with implicit drag.
+/// Contact forces from the rows, then the second half kick with implicit drag. Brings groups up to their rows.
 LaneSums force_and_kick(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 LaneSums force_and_kick(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);
 
 /// Second half of `step` and the first of `next` at once: what kick_and_drift() would say is left in `how`. The rows after the
-/// drift are written to lanes.next_row, as those of the spheres that come later are still read.
+/// drift are written to lanes.next_row, as those of the spheres that come later are still read; groups keep velocities only.
 LaneSums force_kick_drift(Lanes<float>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
                           Drifted& how);
 LaneSums force_kick_drift(Lanes<double>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,

@@ -31,19 +31,20 @@ double choose_near_skins_on(Lanes<Real>& lanes, const std::array<double, 3>& edg
   V farthest = hn::Zero(d);
   for (std::size_t g = begin; g < end; ++g) {
     SphereGroup<Real>& own = lanes.group[g];
+    const PlacedGroup<Real>& now = lanes.placed[g];
     const ListedGroup<Real>& then = lanes.listed[g];
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const auto at = [&](const Real* x) { return hn::Load(d, x + o); };
       const auto since = [&](const FixedPoint<Real>* x, const FixedPoint<Real>* x_0) { return hn::Sub(hn::Load(di, x + o), hn::Load(di, x_0 + o)); };
       const V speed = length(at(own.vx), at(own.vy), at(own.vz));
-      const V moved = length(ex(d, since(own.x, own.near_x)), ey(d, since(own.y, own.near_y)), ez(d, since(own.z, own.near_z)));
-      const V moved_in_all = length(ex(d, since(own.x, then.x)), ey(d, since(own.y, then.y)), ez(d, since(own.z, then.z)));
+      const V moved = length(ex(d, since(now.x, own.near_x)), ey(d, since(now.y, own.near_y)), ez(d, since(now.z, own.near_z)));
+      const V moved_in_all = length(ex(d, since(now.x, then.x)), ey(d, since(now.y, then.y)), ez(d, since(now.z, then.z)));
       const V wanted = hn::Max(hn::Max(hn::Mul(duration, speed), hn::Mul(durations, moved)), hn::Max(hn::Mul(memory, at(own.near_skin)), least));
       const V skin = hn::Max(hn::Min(hn::Min(wanted, most), hn::Sub(listed, moved_in_all)), hn::Zero(d));
       hn::Store(skin, d, own.near_skin + o);
       farthest = hn::Max(farthest, hn::Add(skin, moved_in_all));
     }
-    for (std::size_t l = 0; l < kLanes; ++l) lanes.row[g * kLanes + l].reach = own.radius[l] + own.near_skin[l];
+    for (std::size_t l = 0; l < kLanes; ++l) lanes.row[g * kLanes + l].reach = now.radius[l] + own.near_skin[l];
   }
   return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, farthest)));
 }
@@ -60,14 +61,15 @@ void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, std::si
   for (std::size_t g = begin; g < end; ++g) {
     fetch_frontier(lanes, g);
     SphereGroup<Real>& own = lanes.group[g];
+    const PlacedGroup<Real>& now = lanes.placed[g];
     std::uint32_t count[kLanes] = {};
     Rung* picked = lanes.near_rung.data() + next;
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
-      const auto x = hn::Load(di, own.x + o), y = hn::Load(di, own.y + o), z = hn::Load(di, own.z + o);
+      const auto x = hn::Load(di, now.x + o), y = hn::Load(di, now.y + o), z = hn::Load(di, now.z + o);
       hn::Store(x, di, own.near_x + o);
       hn::Store(y, di, own.near_y + o);
       hn::Store(z, di, own.near_z + o);
-      const V reach = hn::Add(hn::Load(d, own.radius + o), hn::Load(d, own.near_skin + o));
+      const V reach = hn::Add(hn::Load(d, now.radius + o), hn::Load(d, own.near_skin + o));
       for (std::size_t rung = lanes.first_rung[g]; rung < lanes.first_rung[g + 1]; ++rung) {
         const std::uint32_t* row = lanes.rung[rung].row + o;
         const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0);

@@ -55,31 +55,33 @@ Lanes<Real> make_lanes(const State& state, double dt, double skin, double near_s
   lanes.unit = units_of(p, dt);
   const double length = lanes.unit.length, speed = length / lanes.unit.time, acceleration = speed / lanes.unit.time;
   lanes.group.resize((p.size() + kLanes - 1) / kLanes);
+  lanes.placed.resize(lanes.group.size());
   lanes.listed.resize(lanes.group.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     SphereGroup<Real>& g = lanes.group[i / kLanes];
+    PlacedGroup<Real>& placed = lanes.placed[i / kLanes];
     const std::size_t l = i % kLanes;
-    g.x[l] = fixed<Real>(state.ref_x[i]);
-    g.y[l] = fixed<Real>(state.ref_y[i]);
-    g.z[l] = fixed<Real>(state.ref_z[i]);
+    placed.x[l] = fixed<Real>(state.ref_x[i]);
+    placed.y[l] = fixed<Real>(state.ref_y[i]);
+    placed.z[l] = fixed<Real>(state.ref_z[i]);
     g.vx[l] = static_cast<Real>(p.vx[i] / speed);
     g.vy[l] = static_cast<Real>(p.vy[i] / speed);
     g.vz[l] = static_cast<Real>(p.vz[i] / speed);
-    g.ax[l] = static_cast<Real>(state.ax[i] / acceleration);
-    g.ay[l] = static_cast<Real>(state.ay[i] / acceleration);
-    g.az[l] = static_cast<Real>(state.az[i] / acceleration);
-    g.radius[l] = static_cast<Real>(p.radius[i] / length);
+    placed.ax[l] = static_cast<Real>(state.ax[i] / acceleration);
+    placed.ay[l] = static_cast<Real>(state.ay[i] / acceleration);
+    placed.az[l] = static_cast<Real>(state.az[i] / acceleration);
+    placed.radius[l] = static_cast<Real>(p.radius[i] / length);
     g.inverse_mass[l] = static_cast<Real>(lanes.unit.mass / p.mass[i]);
     lanes.listed[i / kLanes].sphere[l] = static_cast<std::uint32_t>(i);
   }
   const Eigen::Matrix3d& H = state.ref_H;
   arrange(lanes, {H(0, 0) / length, H(1, 1) / length, H(2, 2) / length}, skin / length, near_skin / length, team);
   for (std::size_t t = 0; t < lanes.spheres; ++t) {
-    SphereGroup<Real>& g = lanes.group[t / kLanes];
+    PlacedGroup<Real>& placed = lanes.placed[t / kLanes];
     const std::size_t l = t % kLanes, i = lanes.listed[t / kLanes].sphere[l];
-    g.x[l] = fixed<Real>(p.sx[i]);
-    g.y[l] = fixed<Real>(p.sy[i]);
-    g.z[l] = fixed<Real>(p.sz[i]);
+    placed.x[l] = fixed<Real>(p.sx[i]);
+    placed.y[l] = fixed<Real>(p.sy[i]);
+    placed.z[l] = fixed<Real>(p.sz[i]);
   }
   return lanes;
 }
@@ -90,20 +92,22 @@ void store_lanes(const Lanes<Real>& lanes, State& state) {
   const double length = lanes.unit.length, speed = length / lanes.unit.time, acceleration = speed / lanes.unit.time;
   for (std::size_t t = 0; t < lanes.spheres; ++t) {
     const SphereGroup<Real>& g = lanes.group[t / kLanes];
+    const PlacedGroup<Real>& placed = lanes.placed[t / kLanes];
     const ListedGroup<Real>& listed = lanes.listed[t / kLanes];
     const std::size_t l = t % kLanes, i = listed.sphere[l];
-    p.sx[i] = unwrapped(g.x[l], listed.x[l]);
-    p.sy[i] = unwrapped(g.y[l], listed.y[l]);
-    p.sz[i] = unwrapped(g.z[l], listed.z[l]);
+    p.sx[i] = unwrapped(placed.x[l], listed.x[l]);
+    p.sy[i] = unwrapped(placed.y[l], listed.y[l]);
+    p.sz[i] = unwrapped(placed.z[l], listed.z[l]);
     state.ref_x[i] = fraction(listed.x[l]);
     state.ref_y[i] = fraction(listed.y[l]);
     state.ref_z[i] = fraction(listed.z[l]);
     p.vx[i] = static_cast<double>(g.vx[l]) * speed;
     p.vy[i] = static_cast<double>(g.vy[l]) * speed;
     p.vz[i] = static_cast<double>(g.vz[l]) * speed;
-    state.ax[i] = static_cast<double>(g.ax[l]) * acceleration;
-    state.ay[i] = static_cast<double>(g.ay[l]) * acceleration;
-    state.az[i] = static_cast<double>(g.az[l]) * acceleration;
+    if (lanes.predicted) continue;  // in the middle of a step, whose end gives new ones
+    state.ax[i] = static_cast<double>(placed.ax[l]) * acceleration;
+    state.ay[i] = static_cast<double>(placed.ay[l]) * acceleration;
+    state.az[i] = static_cast<double>(placed.az[l]) * acceleration;
   }
 }
 
@@ -118,7 +122,7 @@ double sum_squared_overlaps(const Lanes<Real>& lanes, const Eigen::Matrix3d& H) 
   };
   double sum = 0;
   for (std::size_t g = 0; g < lanes.group.size(); ++g) {
-    const SphereGroup<Real>& own = lanes.group[g];
+    const PlacedGroup<Real>& own = lanes.placed[g];
     double lane[kLanes] = {};
     for (std::size_t k = lanes.first_rung[g]; k < lanes.first_rung[g + 1]; ++k) {
       for (std::size_t l = 0; l < kLanes; ++l) {

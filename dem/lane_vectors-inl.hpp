@@ -41,14 +41,13 @@ HWY_INLINE void fetch(const T* first, std::size_t count) {
   for (std::size_t byte = 0; byte < count * sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(first) + byte, to_write, 3);
 }
 
-/// Asks, in large scenes, for what a pass is about to need of groups near g: their spheres, near rungs, and the rows it will write.
+/// Asks, in large scenes, for what a pass is about to need of groups near g: their spheres and near rungs.
 template <class Real>
 HWY_INLINE void fetch_groups(const Lanes<Real>& lanes, std::size_t g) {
   constexpr std::size_t ahead = 4;
   if (!lanes.beyond_caches || g + ahead >= lanes.group.size()) return;
   fetch<true>(&lanes.group[g + ahead], 1);
   fetch<false>(lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]);
-  fetch<true>(lanes.next_row.data() + (g + ahead) * kLanes, kLanes);
 }
 
 /// Asks for the first near rungs of the block of groups from `begin` on: they do not follow on those of the block before.
@@ -72,11 +71,22 @@ HWY_INLINE Quartet<D> gather_rows(D d, const Real* rows, const std::uint32_t* ro
 }
 
 template <class D, class Real>
-HWY_INLINE void store_rows(D d, const Quartet<D>& q, Real* rows, std::size_t from) {
-  hn::Store(q.a, d, rows + from);
-  hn::Store(q.b, d, rows + from + 1);
-  hn::Store(q.c, d, rows + from + 2);
-  hn::Store(q.d, d, rows + from + 3);
+HWY_INLINE void load_rows(D d, const Real* rows, Quartet<D>& first, Quartet<D>& second) {
+  const std::uint32_t row = 0;
+  first = gather_rows(d, rows, &row, 0);
+  second = gather_rows(d, rows, &row, 4);
+}
+
+template <bool past_caches, class D, class Real>
+HWY_INLINE void store_rows(D d, const Quartet<D>& first, const Quartet<D>& second, Real* rows) {
+  hn::Store(first.a, d, rows);
+  hn::Store(first.b, d, rows + 1);
+  hn::Store(first.c, d, rows + 2);
+  hn::Store(first.d, d, rows + 3);
+  hn::Store(second.a, d, rows + 4);
+  hn::Store(second.b, d, rows + 5);
+  hn::Store(second.c, d, rows + 6);
+  hn::Store(second.d, d, rows + 7);
 }
 #else
 template <class D, class Real>
@@ -92,28 +102,21 @@ HWY_INLINE hn::Vec<D> gather_pieces(D d, const Real* rows, const std::uint32_t* 
   }
 }
 
-template <class D, class Real>
-HWY_INLINE void store_pieces(D d, hn::Vec<D> v, Real* row) {
-  constexpr std::size_t m = 16 / sizeof(Real);
-  if constexpr (hn::MaxLanes(D()) == m) {
-    hn::Store(v, d, row);
-  } else {
-    const hn::Half<D> half;
-    store_pieces(half, hn::LowerHalf(half, v), row);
-    store_pieces(half, hn::UpperHalf(half, v), row + hn::MaxLanes(half) * 8);
-  }
+/// Four vectors of pieces, each of every fourth row, as four fields of all rows; and the other way, since it is its own inverse.
+template <class D>
+HWY_INLINE Quartet<D> transposed(D d, const Quartet<D>& q) {
+  const hn::Repartition<double, D> pairs;
+  const auto ab01 = hn::BitCast(pairs, hn::InterleaveLower(d, q.a, q.b)), cd01 = hn::BitCast(pairs, hn::InterleaveUpper(d, q.a, q.b)),
+             ab23 = hn::BitCast(pairs, hn::InterleaveLower(d, q.c, q.d)), cd23 = hn::BitCast(pairs, hn::InterleaveUpper(d, q.c, q.d));
+  return {hn::BitCast(d, hn::InterleaveLower(pairs, ab01, ab23)), hn::BitCast(d, hn::InterleaveUpper(pairs, ab01, ab23)),
+          hn::BitCast(d, hn::InterleaveLower(pairs, cd01, cd23)), hn::BitCast(d, hn::InterleaveUpper(pairs, cd01, cd23))};
 }
 
 /// Four fields of the rows, from the half of them that begins at number `from` (0 or 4).
 template <class D>
 HWY_INLINE Quartet<D> gather_rows(D d, const float* rows, const std::uint32_t* row, std::size_t from) {
-  const hn::Repartition<double, D> pairs;
-  const auto p0 = gather_pieces(d, rows, row, from / 4), p1 = gather_pieces(d, rows, row + 1, from / 4),
-             p2 = gather_pieces(d, rows, row + 2, from / 4), p3 = gather_pieces(d, rows, row + 3, from / 4);
-  const auto ab01 = hn::BitCast(pairs, hn::InterleaveLower(d, p0, p1)), cd01 = hn::BitCast(pairs, hn::InterleaveUpper(d, p0, p1)),
-             ab23 = hn::BitCast(pairs, hn::InterleaveLower(d, p2, p3)), cd23 = hn::BitCast(pairs, hn::InterleaveUpper(d, p2, p3));
-  return {hn::BitCast(d, hn::InterleaveLower(pairs, ab01, ab23)), hn::BitCast(d, hn::InterleaveUpper(pairs, ab01, ab23)),
-          hn::BitCast(d, hn::InterleaveLower(pairs, cd01, cd23)), hn::BitCast(d, hn::InterleaveUpper(pairs, cd01, cd23))};
+  return transposed(d, {gather_pieces(d, rows, row, from / 4), gather_pieces(d, rows, row + 1, from / 4),
+                        gather_pieces(d, rows, row + 2, from / 4), gather_pieces(d, rows, row + 3, from / 4)});
 }
 
 template <class D>
@@ -124,24 +127,94 @@ HWY_INLINE Quartet<D> gather_rows(D d, const double* rows, const std::uint32_t* 
           hn::InterleaveUpper(d, q0, q1)};
 }
 
-/// The other way: four fields into consecutive rows.
+// Consecutive rows, as many as a vector has lanes, are eight vectors of memory. Their pieces, eight of them to m rows, are the
+// blocks of eight other vectors: block b of vector k is piece 8b + k.
+
+/// [a0 a1 a2 a3] .. [d0 d1 d2 d3] as [a0 b0 c0 d0] .. [a3 b3 c3 d3]; its own inverse.
 template <class D>
-HWY_INLINE void store_rows(D d, const Quartet<D>& q, float* rows, std::size_t from) {
-  const hn::Repartition<double, D> pairs;
-  const auto ab01 = hn::BitCast(pairs, hn::InterleaveLower(d, q.a, q.b)), ab23 = hn::BitCast(pairs, hn::InterleaveUpper(d, q.a, q.b)),
-             cd01 = hn::BitCast(pairs, hn::InterleaveLower(d, q.c, q.d)), cd23 = hn::BitCast(pairs, hn::InterleaveUpper(d, q.c, q.d));
-  store_pieces(d, hn::BitCast(d, hn::InterleaveLower(pairs, ab01, cd01)), rows + from);
-  store_pieces(d, hn::BitCast(d, hn::InterleaveUpper(pairs, ab01, cd01)), rows + from + 8);
-  store_pieces(d, hn::BitCast(d, hn::InterleaveLower(pairs, ab23, cd23)), rows + from + 16);
-  store_pieces(d, hn::BitCast(d, hn::InterleaveUpper(pairs, ab23, cd23)), rows + from + 24);
+HWY_INLINE Quartet<D> blocks_transposed(D d, const Quartet<D>& q) {
+  const auto ac01 = hn::ConcatLowerLower(d, q.c, q.a), ac23 = hn::ConcatUpperUpper(d, q.c, q.a),
+             bd01 = hn::ConcatLowerLower(d, q.d, q.b), bd23 = hn::ConcatUpperUpper(d, q.d, q.b);
+  return {hn::OddEvenBlocks(hn::SwapAdjacentBlocks(bd01), ac01), hn::OddEvenBlocks(bd01, hn::SwapAdjacentBlocks(ac01)),
+          hn::OddEvenBlocks(hn::SwapAdjacentBlocks(bd23), ac23), hn::OddEvenBlocks(bd23, hn::SwapAdjacentBlocks(ac23))};
+}
+
+/// Four of the eight vectors of blocks, from the one that begins at `from`.
+template <class D, class Real>
+HWY_INLINE Quartet<D> load_blocks(D d, const Real* from) {
+  constexpr std::size_t m = 16 / sizeof(Real), blocks = hn::MaxLanes(D()) / m;
+  if constexpr (blocks == 1) {
+    return {hn::Load(d, from), hn::Load(d, from + m), hn::Load(d, from + 2 * m), hn::Load(d, from + 3 * m)};
+  } else if constexpr (blocks == 2) {
+    const auto ab0 = hn::Load(d, from), cd0 = hn::Load(d, from + 2 * m), ab1 = hn::Load(d, from + 8 * m), cd1 = hn::Load(d, from + 10 * m);
+    return {hn::ConcatLowerLower(d, ab1, ab0), hn::ConcatUpperUpper(d, ab1, ab0), hn::ConcatLowerLower(d, cd1, cd0),
+            hn::ConcatUpperUpper(d, cd1, cd0)};
+  } else {
+    return blocks_transposed(d, {hn::Load(d, from), hn::Load(d, from + 8 * m), hn::Load(d, from + 16 * m), hn::Load(d, from + 24 * m)});
+  }
+}
+
+/// The other way; past the caches: to memory at once, whose lines need not be read for that.
+template <bool past_caches, class D, class Real>
+HWY_INLINE void store_blocks(D d, const Quartet<D>& q, Real* to) {
+  constexpr std::size_t m = 16 / sizeof(Real), blocks = hn::MaxLanes(D()) / m;
+  const auto store = [&](hn::Vec<D> v, Real* there) {
+    if constexpr (past_caches) {
+      hn::Stream(v, d, there);
+    } else {
+      hn::Store(v, d, there);
+    }
+  };
+  if constexpr (blocks == 1) {
+    store(q.a, to);
+    store(q.b, to + m);
+    store(q.c, to + 2 * m);
+    store(q.d, to + 3 * m);
+  } else if constexpr (blocks == 2) {
+    store(hn::ConcatLowerLower(d, q.b, q.a), to);
+    store(hn::ConcatLowerLower(d, q.d, q.c), to + 2 * m);
+    store(hn::ConcatUpperUpper(d, q.b, q.a), to + 8 * m);
+    store(hn::ConcatUpperUpper(d, q.d, q.c), to + 10 * m);
+  } else {
+    const Quartet<D> line = blocks_transposed(d, q);
+    store(line.a, to);
+    store(line.b, to + 8 * m);
+    store(line.c, to + 16 * m);
+    store(line.d, to + 24 * m);
+  }
+}
+
+/// The fields of consecutive rows: the first four and the last four of each.
+template <class D>
+HWY_INLINE void load_rows(D d, const float* rows, Quartet<D>& first, Quartet<D>& second) {
+  const Quartet<D> p = load_blocks(d, rows), q = load_blocks(d, rows + 16);
+  first = transposed(d, {p.a, p.c, q.a, q.c});
+  second = transposed(d, {p.b, p.d, q.b, q.d});
 }
 
 template <class D>
-HWY_INLINE void store_rows(D d, const Quartet<D>& q, double* rows, std::size_t from) {
-  store_pieces(d, hn::InterleaveLower(d, q.a, q.b), rows + from);
-  store_pieces(d, hn::InterleaveUpper(d, q.a, q.b), rows + from + 8);
-  store_pieces(d, hn::InterleaveLower(d, q.c, q.d), rows + from + 2);
-  store_pieces(d, hn::InterleaveUpper(d, q.c, q.d), rows + from + 10);
+HWY_INLINE void load_rows(D d, const double* rows, Quartet<D>& first, Quartet<D>& second) {
+  const Quartet<D> p = load_blocks(d, rows), q = load_blocks(d, rows + 8);
+  first = {hn::InterleaveLower(d, p.a, q.a), hn::InterleaveUpper(d, p.a, q.a), hn::InterleaveLower(d, p.b, q.b),
+           hn::InterleaveUpper(d, p.b, q.b)};
+  second = {hn::InterleaveLower(d, p.c, q.c), hn::InterleaveUpper(d, p.c, q.c), hn::InterleaveLower(d, p.d, q.d),
+            hn::InterleaveUpper(d, p.d, q.d)};
+}
+
+/// The other way.
+template <bool past_caches, class D>
+HWY_INLINE void store_rows(D d, const Quartet<D>& first, const Quartet<D>& second, float* rows) {
+  const Quartet<D> p = transposed(d, first), q = transposed(d, second);
+  store_blocks<past_caches>(d, Quartet<D>{p.a, q.a, p.b, q.b}, rows);
+  store_blocks<past_caches>(d, Quartet<D>{p.c, q.c, p.d, q.d}, rows + 16);
+}
+
+template <bool past_caches, class D>
+HWY_INLINE void store_rows(D d, const Quartet<D>& first, const Quartet<D>& second, double* rows) {
+  store_blocks<past_caches>(d, Quartet<D>{hn::InterleaveLower(d, first.a, first.b), hn::InterleaveLower(d, first.c, first.d),
+                                          hn::InterleaveLower(d, second.a, second.b), hn::InterleaveLower(d, second.c, second.d)}, rows);
+  store_blocks<past_caches>(d, Quartet<D>{hn::InterleaveUpper(d, first.a, first.b), hn::InterleaveUpper(d, first.c, first.d),
+                                          hn::InterleaveUpper(d, second.a, second.b), hn::InterleaveUpper(d, second.c, second.d)}, rows + 8);
 }
 #endif
 

@@ -7,6 +7,7 @@
 //   mixed precision: 32-bit positions, float forces;  full precision: 52-bit positions, double forces
 // Only for rectangular cells in which a sphere meets at most one image of another.
 
+#include <boost/align/aligned_allocator.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -41,16 +42,26 @@ struct alignas(8 * sizeof(Real)) SphereRow {
   Real radius;
 };
 
-/// Sixteen spheres. Unused lanes have inverse mass 0 and a radius so negative that they touch nobody.
+/// Beginning with a cache line.
+template <class Real>
+using Rows = std::vector<SphereRow<Real>, boost::alignment::aligned_allocator<SphereRow<Real>, 64>>;
+
+/// Sixteen spheres: what each step reads beside their rows. Unused lanes have inverse mass 0.
 template <class Real>
 struct alignas(64) SphereGroup {
-  using Int = FixedPoint<Real>;
-  Int x[kLanes], y[kLanes], z[kLanes];
-  Int near_x[kLanes], near_y[kLanes], near_z[kLanes];  ///< when the near were picked from it
+  FixedPoint<Real> near_x[kLanes], near_y[kLanes], near_z[kLanes];  ///< when the near were picked from it
   Real vx[kLanes], vy[kLanes], vz[kLanes];
-  Real ax[kLanes], ay[kLanes], az[kLanes];
-  Real radius[kLanes], inverse_mass[kLanes];
+  Real inverse_mass[kLanes];
   Real near_skin[kLanes];  ///< how far it may move before the near ones are picked again, in a cell that keeps its shape
+};
+
+/// The same sixteen where they are; left behind while steps are taken two halves at once (force_kick_drift()), which reads and writes
+/// rows instead. Unused lanes have a radius so negative that they touch nobody.
+template <class Real>
+struct alignas(64) PlacedGroup {
+  FixedPoint<Real> x[kLanes], y[kLanes], z[kLanes];
+  Real ax[kLanes], ay[kLanes], az[kLanes];  ///< or predicted velocities, Lanes::predicted
+  Real radius[kLanes];
 };
 
 /// The same sixteen when the list was made; most steps need not read them.
@@ -76,9 +87,10 @@ template <class Real>
 struct Lanes {
   std::size_t spheres = 0;
   std::vector<SphereGroup<Real>> group;
+  std::vector<PlacedGroup<Real>> placed;
   std::vector<ListedGroup<Real>> listed;
-  std::vector<SphereRow<Real>> row;        ///< in the order of lanes; the last one is nobody's, for unused places
-  std::vector<SphereRow<Real>> next_row;   ///< those of the next step while they are written
+  Rows<Real> row;                          ///< in the order of lanes; the last one is nobody's, for unused places
+  Rows<Real> next_row;                     ///< those of the next step while they are written
   std::vector<std::size_t> first_rung;     ///< of each group, and the end
   std::vector<Rung> rung;                  ///< the list
   std::vector<Rung> near_rung;             ///< the near ones, of the groups that were picked together without gaps
@@ -86,6 +98,8 @@ struct Lanes {
   std::vector<std::uint32_t> near_count;   ///< rungs of them in each group
   std::size_t frontier = 0;                ///< groups from one to the farthest ahead whose rows it reads, roughly
   bool beyond_caches = false;              ///< more spheres than a core's caches hold from step to step
+  bool rows_ahead = false;                 ///< placed groups are behind their rows; take_rows() brings them up
+  bool predicted = false;                  ///< take_rows() has: they have the rows' velocities in place of accelerations
   Units unit;
 };
 

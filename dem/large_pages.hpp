@@ -11,8 +11,8 @@ namespace grainlaw::dem {
 void ask_for_large_pages(void* begin, std::size_t bytes);
 
 /// v.reserve(n), but what was in v is lost when it must move.
-template <class T>
-void reserve_on_large_pages(std::vector<T>& v, std::size_t n) {
+template <class T, class Allocator>
+void reserve_on_large_pages(std::vector<T, Allocator>& v, std::size_t n) {
   if (n <= v.capacity()) return;
   v = {};
   v.reserve(n);

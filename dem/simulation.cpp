@@ -227,13 +227,9 @@ void renew_list(Simulation& sim, const CellMotion& end) {
     enter_lanes(sim);
   } else {
     if (on_lanes(sim)) {
-      synchronise(sim);
+      read_lanes(sim);
+      read_predicted(sim);
       sim.lanes = {};
-      const double h = sim.dt / 2;
-      const Packing& p = state.packing;
-      for (std::size_t i = 0; i < p.size(); ++i) {
-        sim.motion[i] = {p.vx[i] + h * state.ax[i], p.vy[i] + h * state.ay[i], p.vz[i] + h * state.az[i], 0};
-      }
     }
     rebuild(sim);
   }

@@ -161,9 +161,10 @@ TYPED_TEST(LaneList, NearSkinsFollowSpeeds) {
     double fastest = 0;
     for (std::size_t g = 0; g < lanes.group.size(); ++g) {
       SphereGroup<TypeParam>& group = lanes.group[g];
+      const PlacedGroup<TypeParam>& placed = lanes.placed[g];
       for (std::size_t l = 0; l < kLanes; ++l) {
-        group.near_x[l] = group.x[l] + up_to(0.1), group.near_y[l] = group.y[l] + up_to(0.1),
-        group.near_z[l] = group.z[l] + up_to(0.1);
+        group.near_x[l] = placed.x[l] + up_to(0.1), group.near_y[l] = placed.y[l] + up_to(0.1),
+        group.near_z[l] = placed.z[l] + up_to(0.1);
         lanes.listed[g].x[l] += up_to(0.1), lanes.listed[g].y[l] += up_to(0.1), lanes.listed[g].z[l] += up_to(0.1);
         fastest = std::max(fastest, Eigen::Vector3d(group.vx[l], group.vy[l], group.vz[l]).norm());
       }
@@ -182,15 +183,16 @@ TYPED_TEST(LaneList, NearSkinsFollowSpeeds) {
     for (std::size_t t = 0; t < lanes.spheres; ++t) {
       const std::size_t l = t % kLanes;
       const SphereGroup<TypeParam>&g = before.group[t / kLanes], &now = lanes.group[t / kLanes];
+      const PlacedGroup<TypeParam>& placed = before.placed[t / kLanes];
       const ListedGroup<TypeParam>& listed = before.listed[t / kLanes];
       const double v = Eigen::Vector3d(g.vx[l], g.vy[l], g.vz[l]).norm(),
-                   near = moved(g.x[l], g.y[l], g.z[l], g.near_x[l], g.near_y[l], g.near_z[l]),
-                   in_all = moved(g.x[l], g.y[l], g.z[l], listed.x[l], listed.y[l], listed.z[l]);
+                   near = moved(placed.x[l], placed.y[l], placed.z[l], g.near_x[l], g.near_y[l], g.near_z[l]),
+                   in_all = moved(placed.x[l], placed.y[l], placed.z[l], listed.x[l], listed.y[l], listed.z[l]);
       const double wanted = std::max({skins.duration * v, skins.duration / skins.since * near,
                                       skins.memory * static_cast<double>(g.near_skin[l]), skins.least});
       const double expected = std::max(0.0, std::min({wanted, skins.most, skins.listed - in_all}));
       ASSERT_NEAR(static_cast<double>(now.near_skin[l]), expected, 1e-5 * r_0);
-      ASSERT_NEAR(static_cast<double>(lanes.row[t].reach), static_cast<double>(now.radius[l] + now.near_skin[l]),
+      ASSERT_NEAR(static_cast<double>(lanes.row[t].reach), static_cast<double>(placed.radius[l] + now.near_skin[l]),
                   1e-6 * r_0);
       farthest = std::max(farthest, in_all + static_cast<double>(now.near_skin[l]));
       ++(expected == skins.least ? least : expected == skins.most ? most : expected < wanted ? held : free);
