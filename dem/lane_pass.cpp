@@ -138,8 +138,7 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
   for (std::size_t g = begin; g < end; ++g) {
     const SphereGroup<Real>& own = lanes.group[g];
     const std::size_t first_rung = lanes.near_first[g], last_rung = first_rung + lanes.near_count[g];
-    fetch_frontier(lanes, g);
-    fetch_groups(lanes, g);
+    FetchAhead<Real> ahead(lanes, g);
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       Quartet<Tag<Real>> at, moving;
       load_rows(d, reinterpret_cast<const Real*>(lanes.row.data() + g * kLanes + o), at, moving);
@@ -150,6 +149,7 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
       V gx = zero, gy = zero, gz = zero;        // its viscous part
       V box = zero, lost = zero;
       for (std::size_t rung = first_rung; rung < last_rung; ++rung) {
+        ahead.some();
         const std::uint32_t* row = lanes.near_rung[rung].row + o;
         const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0), motion = gather_rows(d, rows, row, 4);
         const V dx = ex(d, hn::Sub(here.x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(here.y, hn::BitCast(di, place.b))),
@@ -191,6 +191,7 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
       add_to(totals.contact + o, d, lost);
       add_to(totals.v2 + o, d, multiply_add(nz, nz, multiply_add(ny, ny, hn::Mul(nx, nx))));
     }
+    ahead.rest();
   }
   return {-0.5 * sum_of(totals.box), -sum_of(totals.contact), sum_of(totals.v2)};
 }

@@ -35,20 +35,60 @@ HWY_INLINE void fetch_frontier(const Lanes<Real>& lanes, std::size_t g) {
   for (std::size_t byte = 0; byte < kLanes * sizeof(SphereRow<Real>); byte += 64) __builtin_prefetch(rows + byte, 0, 2);
 }
 
-/// Asks for the lines of `count` values from `first` on.
-template <bool to_write, class T>
-HWY_INLINE void fetch(const T* first, std::size_t count) {
-  for (std::size_t byte = 0; byte < count * sizeof(T); byte += 64) __builtin_prefetch(reinterpret_cast<const char*>(first) + byte, to_write, 3);
-}
+/// Lines of memory that are asked for one by one: all at once they would keep the core's own loads waiting.
+template <bool to_write, int locality>
+class Fetch {
+ public:
+  Fetch() = default;
+  template <class T>
+  Fetch(const T* first, std::size_t count) : at_(reinterpret_cast<const char*>(first)), end_(reinterpret_cast<const char*>(first + count)) {}
+  HWY_INLINE void one() {
+    if (at_ >= end_) return;
+    __builtin_prefetch(at_, to_write, locality);
+    at_ += 64;
+  }
+  HWY_INLINE void rest() {
+    while (at_ < end_) one();
+  }
 
-/// Asks, in large scenes, for what a pass is about to need of groups near g: their spheres and near rungs.
+ private:
+  const char *at_ = nullptr, *end_ = nullptr;
+};
+
+/// What a pass is about to need of groups near g: rows, as fetch_frontier(), and in large scenes spheres and near rungs, too.
 template <class Real>
-HWY_INLINE void fetch_groups(const Lanes<Real>& lanes, std::size_t g) {
-  constexpr std::size_t ahead = 4;
-  if (!lanes.beyond_caches || g + ahead >= lanes.group.size()) return;
-  fetch<true>(&lanes.group[g + ahead], 1);
-  fetch<false>(lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]);
-}
+class FetchAhead {
+ public:
+  HWY_INLINE FetchAhead(const Lanes<Real>& lanes, std::size_t g) : large_(lanes.beyond_caches) {
+    if (!large_) {
+      fetch_frontier(lanes, g);
+      return;
+    }
+    constexpr std::size_t ahead = 4;
+    if (g + lanes.frontier < lanes.group.size()) rows_ = {lanes.row.data() + (g + lanes.frontier) * kLanes, kLanes};
+    if (g + ahead >= lanes.group.size()) return;
+    spheres_ = {&lanes.group[g + ahead], 1};
+    rungs_ = {lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]};
+  }
+  HWY_INLINE void some() {
+    if (!large_) return;
+    rows_.one();
+    spheres_.one();
+    rungs_.one();
+  }
+  HWY_INLINE void rest() {
+    if (!large_) return;
+    rows_.rest();
+    spheres_.rest();
+    rungs_.rest();
+  }
+
+ private:
+  bool large_;
+  Fetch<false, 2> rows_;
+  Fetch<true, 3> spheres_;
+  Fetch<false, 3> rungs_;
+};
 
 /// Asks for the first near rungs of the block of groups from `begin` on: they do not follow on those of the block before.
 template <class Real>
