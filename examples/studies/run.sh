@@ -16,6 +16,7 @@ $grainlaw study dem "$inputs/dem.json" -o "$out/dem" --reference time_step_fract
   quasi_static_step=0.004
 $grainlaw study dem "$inputs/rate.json" -o "$out/rate" --reference time_step_fraction=0.05 strain_rate=69 \
   --vary strain_rate=276 strain_rate=552 strain_rate=1104
-$grainlaw study chain "$inputs/chain.json" -o "$out/chain" --for "$inputs/uniaxial.json" --reference 'seeds=[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16]' \
-  --vary 'seeds=[1,2,3,4]' particles=500 particles=2000 time_step_fraction=0.2 strain_rate=276 rows=100 'densities=[0.70,0.75,0.80]' 'tests[1].strain=0.2'
+half=$(seq -s, 32)
+$grainlaw study chain "$inputs/chain.json" -o "$out/chain" --for "$inputs/uniaxial.json" --reference strain_rate=69 \
+  --vary "seeds=[$half]" particles=500 time_step_fraction=0.2 strain_rate=276 rows=100 'densities=[0.70,0.75,0.80]' 'tests[1].strain=0.2'
 $grainlaw study fit "$out/chain/data/reference" -o "$out/fit" --for "$inputs/uniaxial.json"
