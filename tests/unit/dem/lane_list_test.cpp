@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "dem/lane_pass.hpp"
@@ -158,21 +159,30 @@ TYPED_TEST(LaneList, NearSkinsFollowSpeeds) {
     const auto up_to = [&](double radii) {
       return static_cast<Int>(draw.uniform(-radii, radii) * r_0 / edge.maxCoeff() * kStepsPerEdge<TypeParam>);
     };
+    using Unsigned = std::make_unsigned_t<Int>;  // positions wrap around
+    const auto plus = [](Int a, Int b) {
+      return static_cast<Int>(static_cast<Unsigned>(a) + static_cast<Unsigned>(b));
+    };
+    const auto minus = [](Int a, Int b) {
+      return static_cast<Int>(static_cast<Unsigned>(a) - static_cast<Unsigned>(b));
+    };
     double fastest = 0;
     for (std::size_t g = 0; g < lanes.group.size(); ++g) {
       SphereGroup<TypeParam>& group = lanes.group[g];
       const PlacedGroup<TypeParam>& placed = lanes.placed[g];
       for (std::size_t l = 0; l < kLanes; ++l) {
-        group.near_x[l] = placed.x[l] + up_to(0.1), group.near_y[l] = placed.y[l] + up_to(0.1),
-        group.near_z[l] = placed.z[l] + up_to(0.1);
-        lanes.listed[g].x[l] += up_to(0.1), lanes.listed[g].y[l] += up_to(0.1), lanes.listed[g].z[l] += up_to(0.1);
+        group.near_x[l] = plus(placed.x[l], up_to(0.1)), group.near_y[l] = plus(placed.y[l], up_to(0.1)),
+        group.near_z[l] = plus(placed.z[l], up_to(0.1));
+        lanes.listed[g].x[l] = plus(lanes.listed[g].x[l], up_to(0.1)),
+        lanes.listed[g].y[l] = plus(lanes.listed[g].y[l], up_to(0.1)),
+        lanes.listed[g].z[l] = plus(lanes.listed[g].z[l], up_to(0.1));
         fastest = std::max(fastest, Eigen::Vector3d(group.vx[l], group.vy[l], group.vz[l]).norm());
       }
     }
     draw_near_skins(lanes, 0.5 * r, draw);
     const Lanes<TypeParam> before = lanes;
     const auto moved = [&](Int x, Int y, Int z, Int x_0, Int y_0, Int z_0) {
-      const auto part = [](Int a, Int b) { return static_cast<double>(a - b) / kStepsPerEdge<TypeParam>; };
+      const auto part = [&](Int a, Int b) { return static_cast<double>(minus(a, b)) / kStepsPerEdge<TypeParam>; };
       return Eigen::Vector3d(part(x, x_0) * edge[0], part(y, y_0) * edge[1], part(z, z_0) * edge[2]).norm();
     };
     const double duration = 0.2 * r_0 / fastest;
