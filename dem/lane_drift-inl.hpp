@@ -46,8 +46,8 @@ struct Moved2 {
   }
 };
 
-/// The first half of a step, a vector of spheres after the other: half kick, drift, rows.
-template <bool portable, class Real>
+/// The first half of a step, a vector of spheres after the other: half kick, drift, rows. Those of a large scene go past the caches.
+template <bool portable, bool large, class Real>
 class Drift {
   using D = Tag<Real>;
   using V = hn::Vec<D>;
@@ -56,8 +56,8 @@ class Drift {
   static constexpr hn::RebindToSigned<D> di{};
 
  public:
-  Drift(const LaneStep& step, bool past_caches)
-      : past_caches_(past_caches), h_(set(step.half_dt)), x_(set(step.drift[0])), y_(set(step.drift[1])), z_(set(step.drift[2])),
+  explicit Drift(const LaneStep& step)
+      : h_(set(step.half_dt)), x_(set(step.drift[0])), y_(set(step.drift[1])), z_(set(step.drift[2])),
         moved2_(step), allowed2_(square(step.allowed)), near_stretch_(set(step.near_stretch)), near_loss_(set(step.near_loss)),
         list_in_danger_(step.list_in_danger) {}
 
@@ -77,13 +77,8 @@ class Drift {
     const V near_skin = hn::Load(d, own.near_skin + o), near_allowed = hn::Max(hn::Sub(hn::Mul(near_stretch_, near_skin), near_loss_), hn::Zero(d));
     near_ = hn::And(near_, hn::Lt(moved2_(x, y, z, own.near_x + o, own.near_y + o, own.near_z + o), hn::Mul(near_allowed, near_allowed)));
     auto* to = reinterpret_cast<Real*>(row.data() + g * kLanes + o);
-    const Quartet<D> place = {hn::BitCast(d, x), hn::BitCast(d, y), hn::BitCast(d, z), hn::Add(radius, near_skin)},
-                     motion = {multiply_add(h_, a.x, v.x), multiply_add(h_, a.y, v.y), multiply_add(h_, a.z, v.z), radius};
-    if (past_caches_) {
-      store_rows<true>(d, place, motion, to);
-    } else {
-      store_rows<false>(d, place, motion, to);
-    }
+    store_rows<large>(d, {hn::BitCast(d, x), hn::BitCast(d, y), hn::BitCast(d, z), hn::Add(radius, near_skin)},
+                      {multiply_add(h_, a.x, v.x), multiply_add(h_, a.y, v.y), multiply_add(h_, a.z, v.z), radius}, to);
     return {x, y, z};
   }
 
@@ -97,7 +92,6 @@ class Drift {
   static V set(double x) { return hn::Set(d, static_cast<Real>(x)); }
   static V square(double allowed) { return set(allowed > 0 ? allowed * allowed : -1); }
 
-  bool past_caches_;
   V h_, x_, y_, z_;
   Moved2<Real, portable> moved2_;
   V allowed2_, near_stretch_, near_loss_;

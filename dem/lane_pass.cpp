@@ -92,7 +92,7 @@ template <bool portable, class Real>
 Drifted kick_and_drift_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
   const hn::RebindToSigned<Tag<Real>> di;
-  Drift<portable, Real> drift(step, false);
+  Drift<portable, false, Real> drift(step);
   for (std::size_t g = begin; g < end; ++g) {
     const SphereGroup<Real>& own = lanes.group[g];
     PlacedGroup<Real>& placed = lanes.placed[g];
@@ -121,7 +121,7 @@ HWY_INLINE V overlap_of(V rounded, V squared, V root, V inverse) {
 }
 
 /// Second half of a step but for storing anything: after(group, lane, place, radius, acceleration, velocity) gets each vector of spheres.
-template <bool portable, class Real, class After>
+template <bool portable, bool large, class Real, class After>
 LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end, const After& after) {
   const Tag<Real> d;
   const MultiplyAdd<portable> multiply_add;
@@ -138,7 +138,7 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
   for (std::size_t g = begin; g < end; ++g) {
     const SphereGroup<Real>& own = lanes.group[g];
     const std::size_t first_rung = lanes.near_first[g], last_rung = first_rung + lanes.near_count[g];
-    FetchAhead<Real> ahead(lanes, g);
+    FetchAhead<large, Real> ahead(lanes, g);
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       Quartet<Tag<Real>> at, moving;
       load_rows(d, reinterpret_cast<const Real*>(lanes.row.data() + g * kLanes + o), at, moving);
@@ -200,7 +200,7 @@ template <bool portable, class Real>
 LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
   const Tag<Real> d;
   const hn::RebindToSigned<Tag<Real>> di;
-  return forces_on<portable>(lanes, step, begin, end, [&](std::size_t g, std::size_t o, auto place, auto, auto a, auto v) {
+  return forces_on<portable, false>(lanes, step, begin, end, [&](std::size_t g, std::size_t o, auto place, auto, auto a, auto v) {
     SphereGroup<Real>& own = lanes.group[g];
     PlacedGroup<Real>& placed = lanes.placed[g];
     store(di, place, placed.x + o, placed.y + o, placed.z + o);
@@ -209,16 +209,23 @@ LaneSums force_and_kick_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t
   });
 }
 
+template <bool portable, bool large, class Real>
+LaneSums force_kick_drift_of(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
+                          Drifted& how) {
+  Drift<portable, large, Real> drift(next);
+  const LaneSums sums = forces_on<portable, large>(
+      lanes, step, begin, end,
+      [&](std::size_t g, std::size_t o, auto place, auto r, auto a, auto v) { drift(lanes, lanes.next_row, g, o, place, r, a, v); });
+  if constexpr (large) hwy::FlushStream();
+  how = drift.how();
+  return sums;
+}
+
 template <bool portable, class Real>
 LaneSums force_kick_drift_on(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
                           Drifted& how) {
-  Drift<portable, Real> drift(next, lanes.beyond_caches);
-  const LaneSums sums = forces_on<portable>(
-      lanes, step, begin, end,
-      [&](std::size_t g, std::size_t o, auto place, auto r, auto a, auto v) { drift(lanes, lanes.next_row, g, o, place, r, a, v); });
-  if (lanes.beyond_caches) hwy::FlushStream();
-  how = drift.how();
-  return sums;
+  return lanes.beyond_caches ? force_kick_drift_of<portable, true>(lanes, step, next, begin, end, how)
+                             : force_kick_drift_of<portable, false>(lanes, step, next, begin, end, how);
 }
 
 // What HWY_EXPORT needs: plain functions. One instance is enough where the machine can fuse.

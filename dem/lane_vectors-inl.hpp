@@ -56,35 +56,36 @@ class Fetch {
 };
 
 /// What a pass is about to need of groups near g: rows, as fetch_frontier(), and in large scenes spheres and near rungs, too.
-template <class Real>
+template <bool large, class Real>
 class FetchAhead {
  public:
-  HWY_INLINE FetchAhead(const Lanes<Real>& lanes, std::size_t g) : large_(lanes.beyond_caches) {
-    if (!large_) {
+  HWY_INLINE FetchAhead(const Lanes<Real>& lanes, std::size_t g) {
+    if constexpr (large) {
+      constexpr std::size_t ahead = 4;
+      if (g + lanes.frontier < lanes.group.size()) rows_ = {lanes.row.data() + (g + lanes.frontier) * kLanes, kLanes};
+      if (g + ahead >= lanes.group.size()) return;
+      spheres_ = {&lanes.group[g + ahead], 1};
+      rungs_ = {lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]};
+    } else {
       fetch_frontier(lanes, g);
-      return;
     }
-    constexpr std::size_t ahead = 4;
-    if (g + lanes.frontier < lanes.group.size()) rows_ = {lanes.row.data() + (g + lanes.frontier) * kLanes, kLanes};
-    if (g + ahead >= lanes.group.size()) return;
-    spheres_ = {&lanes.group[g + ahead], 1};
-    rungs_ = {lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]};
   }
   HWY_INLINE void some() {
-    if (!large_) return;
-    rows_.one();
-    spheres_.one();
-    rungs_.one();
+    if constexpr (large) {
+      rows_.one();
+      spheres_.one();
+      rungs_.one();
+    }
   }
   HWY_INLINE void rest() {
-    if (!large_) return;
-    rows_.rest();
-    spheres_.rest();
-    rungs_.rest();
+    if constexpr (large) {
+      rows_.rest();
+      spheres_.rest();
+      rungs_.rest();
+    }
   }
 
  private:
-  bool large_;
   Fetch<false, 2> rows_;
   Fetch<true, 3> spheres_;
   Fetch<false, 3> rungs_;

@@ -4,7 +4,8 @@
 // machine whose speed changes from minute to minute slows both alike.
 //   --threads: both take the same 140 steps from the same state, again and again. A step has the same work each time, so its
 //     faster repeats are those in which nobody else took a processor, and its time is their first decile (steps with a new list
-//     included). Prints "speedup.PRECISION.NU VALUE", of the sums over the steps, and "disturbed.", of all repeats as they were.
+//     included). Prints "speedup.PRECISION.NU VALUE", of the sums over the steps, and "disturbed.", of all repeats as they were; and
+//     "ceiling.", what T runs of one thread each, side by side, win over one: more than that the machine has not to give at that hour.
 //   --tiles: the packing repeated T times along each axis, one thread, turns of some 50 ms. Its steps are too long to find
 //     undisturbed ones: processor time counts. Prints "cost.PRECISION.NU VALUE", of the sums over all turns.
 // Run it alone, --tiles on a pinned core (taskset -c 0).
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <ctime>
 #include <numeric>
+#include <thread>
 
 #include "tests/bench/sheared_packing.hpp"
 
@@ -57,18 +59,26 @@ struct Steps {
 
 struct Threads {
   Pair undisturbed, disturbed;
+  double side_by_side = 0;  // [s] undisturbed, of as many runs of one thread together
 };
 
 Threads compare_threads(const dem::State& state, dem::EngineOptions options, int threads, int rounds) {
   Steps alone, other;
+  std::vector<Steps> side_by_side(static_cast<std::size_t>(threads));
   for (int k = 0; k < rounds; ++k) {
     options.threads = 1;
     alone.repeat(state, options);
+    std::vector<std::jthread> runs;
+    for (Steps& run : side_by_side) runs.emplace_back([&] { run.repeat(state, options); });
+    runs.clear();
     options.threads = threads;
     other.repeat(state, options);
   }
+  const double rate = std::accumulate(side_by_side.begin(), side_by_side.end(), 0.0,
+                                      [](double sum, const Steps& run) { return sum + 1 / run.undisturbed(); });
   return {{alone.undisturbed() / kSpheres, other.undisturbed() / kSpheres},
-          {alone.mean() / kSpheres, other.mean() / kSpheres}};
+          {alone.mean() / kSpheres, other.mean() / kSpheres},
+          1 / rate / kSpheres};
 }
 
 double processor_time(bench::Sheared& shear, int steps) {
@@ -123,6 +133,7 @@ int main(int argc, char** argv) try {
         const Threads times = compare_threads(state, options, threads, rounds);
         print("speedup", times.undisturbed.alone / times.undisturbed.other);
         print("disturbed", times.disturbed.alone / times.disturbed.other);
+        print("ceiling", times.undisturbed.alone / times.side_by_side);
         print("ns", 1e9 * times.undisturbed.alone);
       } else {
         const Pair times = compare_sizes(state, options, tiles, rounds);
