@@ -302,9 +302,11 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   lanes.near_rung.resize(lanes.rung.size());
   lanes.near_first.assign(groups, 0);
   lanes.near_count.assign(groups, 0);
-  lanes.frontier = (kReach[2] * n * s.stripe / (std::size_t{s.bins[1]} * s.bins[2]) + 4 * kBlockSize) / kLanes;
   constexpr std::size_t caches = 8 << 20;
   lanes.beyond_caches = groups * (sizeof(SphereGroup<Real>) + 2 * kLanes * sizeof(SphereRow<Real>)) > caches;
+  // Memory is farther away than caches; but rows that a thread asks for without need must be taken back by the thread that writes them.
+  const std::size_t layers = kReach[2] * n * s.stripe / (std::size_t{s.bins[1]} * s.bins[2]), early = lanes.beyond_caches ? 4 * kBlockSize : 0;
+  lanes.frontier = std::min((layers + early) / kLanes, groups);
   lanes.group = std::move(group);
   lanes.placed = std::move(placed);
   lanes.listed = std::move(listed);

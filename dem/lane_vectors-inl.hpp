@@ -26,12 +26,18 @@ using Tag = hn::CappedTag<Real, kLanes>;
 // A row is cut into pieces of 16 bytes. A vector of pieces of the rows k, k + m, k + 2m ... (m numbers to a piece)
 // becomes, transposed with its m - 1 siblings, m vectors of one field each, lanes in the order of rows.
 
-/// Asks for the rows that groups near g are about to read. Groups go through the cell in the order of rows and read up to
-/// a layer ahead; otherwise the first reader of each row would wait for memory.
+/// The rows that groups near g are about to read: groups go through the cell in the order of rows and read up to `frontier` groups ahead.
+/// Beyond the last layer is the first.
+template <class Real>
+HWY_INLINE const SphereRow<Real>* frontier_rows(const Lanes<Real>& lanes, std::size_t g) {
+  const std::size_t ahead = g + lanes.frontier, groups = lanes.group.size();
+  return lanes.row.data() + (ahead < groups ? ahead : ahead - groups) * kLanes;
+}
+
+/// Asks for them; otherwise the first reader of each row would wait for memory.
 template <class Real>
 HWY_INLINE void fetch_frontier(const Lanes<Real>& lanes, std::size_t g) {
-  if (g + lanes.frontier >= lanes.group.size()) return;
-  const char* rows = reinterpret_cast<const char*>(lanes.row.data() + (g + lanes.frontier) * kLanes);
+  const char* rows = reinterpret_cast<const char*>(frontier_rows(lanes, g));
   for (std::size_t byte = 0; byte < kLanes * sizeof(SphereRow<Real>); byte += 64) __builtin_prefetch(rows + byte, 0, 2);
 }
 
@@ -62,7 +68,7 @@ class FetchAhead {
   HWY_INLINE FetchAhead(const Lanes<Real>& lanes, std::size_t g) {
     if constexpr (large) {
       constexpr std::size_t ahead = 4;
-      if (g + lanes.frontier < lanes.group.size()) rows_ = {lanes.row.data() + (g + lanes.frontier) * kLanes, kLanes};
+      rows_ = {frontier_rows(lanes, g), kLanes};
       if (g + ahead >= lanes.group.size()) return;
       spheres_ = {&lanes.group[g + ahead], 1};
       rungs_ = {lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]};
