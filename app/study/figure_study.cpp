@@ -62,11 +62,12 @@ Figure figure_of(const SettingsStudy& study) {
   Figure figure;
   figure.id = "settings";
   figure.title = "Error of settings against their cost";
-  figure.description = "Error reached over particle-steps. " + study.error +
-                       ". Bars: one standard error by the packings. Shaded: what sampling alone makes; star: the "
-                       "default; grey: dominated by a cheaper setting that is better beyond chance, or so near the "
-                       "energy balance's stop that other "
-                       "data sets would not be finished";
+  figure.description =
+      "Error reached over particle-steps. " + study.error +
+      ". Bars: one standard error by the packings. Shaded: what sampling alone makes; star: the "
+      "default; grey: dominated by a setting that costs no more and is better beyond chance, or so near the "
+      "energy balance's stop that other "
+      "data sets would not be finished";
   figure.panel_height = 380;
   std::vector<const SettingResult*> by_cost;
   for (std::size_t i = study.judged; i < study.results.size(); ++i) by_cost.push_back(&study.results[i]);

@@ -188,16 +188,22 @@ void find_dominated(SettingsStudy& study, const std::vector<LeftOut>& left_out) 
   std::vector<SettingResult>& results = study.results;
   for (std::size_t i = study.judged; i < results.size(); ++i) {
     SettingResult& one = results[i];
-    std::vector<std::size_t> cheaper;
+    const auto dearer = [&](const SettingResult& other) {
+      return other.outcome.cost.particle_steps > one.outcome.cost.particle_steps;
+    };
+    std::vector<std::size_t> rivals;
     for (std::size_t j = study.judged; j < results.size(); ++j) {
-      if (results[j].outcome.cost.particle_steps < one.outcome.cost.particle_steps && shows_as_much(results[j], one) &&
-          !less_safe(results[j], one))
-        cheaper.push_back(j);
+      if (j != i && !dearer(results[j]) && shows_as_much(results[j], one) && !less_safe(results[j], one))
+        rivals.push_back(j);
     }
-    for (const std::size_t j : cheaper) {
+    for (const std::size_t j : rivals) {
+      const bool as_dear = results[j].outcome.cost.particle_steps == one.outcome.cost.particle_steps;
       if (!(results[j].reached <= one.reached)) continue;
-      (beyond_chance(results, i, j, cheaper.size(), left_out) ? one.dominated_by : one.perhaps_dominated_by)
-          .push_back(results[j].outcome.name);
+      if (beyond_chance(results, i, j, rivals.size(), left_out)) {
+        one.dominated_by.push_back(results[j].outcome.name);
+      } else if (!as_dear) {
+        one.perhaps_dominated_by.push_back(results[j].outcome.name);
+      }
     }
   }
 }

@@ -12,10 +12,10 @@
 // is one by definition, and an error of two is twice what chance does. Where packings are chosen errors are relative.
 // A setting whose energy residual comes nearer than half to the one that stops a run dominates none that keeps away: its next data set
 // may not be finished. Costs are counted in particle-steps; seconds are beside them.
-// What is reached is known as well as a few packings tell. A cheaper setting dominates where its reached^2 is less beyond chance: by t
-// errors of the difference, t for one in twenty verdicts on a setting however many are cheaper. That error is the jackknife's, each
-// packing left out in turn of all settings that have it, and 2 floor^4 of both; the squares are those before max(), or chance below
-// the floor would count as none. Where it is less but not beyond chance, it perhaps dominates.
+// What is reached is known as well as a few packings tell. A setting that costs no more dominates where its reached^2 is less beyond
+// chance: by t errors of the difference, t for one in twenty verdicts on a setting however many cost no more. That error is the
+// jackknife's, each packing left out in turn of all settings that have it, and 2 floor^4 of both; the squares are those before max(),
+// or chance below the floor would count as none. Where it is less but not beyond chance, a setting that costs less perhaps dominates.
 
 #include <cstdint>
 #include <string>
@@ -68,7 +68,7 @@ struct SettingResult {
   std::vector<QuantityError> errors;                                  ///< the reference's quantities
   double error = 0, floor = 0, sampling = 0, noise = 0, reached = 0;  ///< NaN where nothing is shown [-]
   double reached_error = 0;               ///< of `reached`, by the jackknife; NaN with fewer than three packings [-]
-  std::vector<std::string> dominated_by;  ///< settings that cost less and reach less, beyond chance
+  std::vector<std::string> dominated_by;  ///< settings that cost no more and reach less, beyond chance
   std::vector<std::string> perhaps_dominated_by;  ///< that cost less and reach as much or less, by what may be chance
 };
 

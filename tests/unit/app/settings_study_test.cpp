@@ -108,7 +108,7 @@ TEST(SettingsStudy, SettingsThatOnlyComputeOtherwiseShareTheirSampling) {
   EXPECT_NEAR(study.results[0].noise, student_95(3) * 0.03, 1e-12) << "other packings";
 }
 
-TEST(SettingsStudy, ADefaultIsDominatedByWhatIsCheaperAndNotWorse) {
+TEST(SettingsStudy, ADefaultIsDominatedByWhatCostsNoMoreAndIsBetter) {
   const std::vector<std::uint64_t> seeds{1, 2, 3};
   const auto study = [&](const SettingOutcome& other) {
     return study_of("dem", "", Packings::given, {},
@@ -118,7 +118,13 @@ TEST(SettingsStudy, ADefaultIsDominatedByWhatIsCheaperAndNotWorse) {
   EXPECT_EQ(study(outcome("better", 3, 0.01, 0.001, seeds)).results[1].dominated_by, Names{"better"});
   EXPECT_EQ(study(outcome("as good", 3, 0.02, 0.001, seeds)).results[1].perhaps_dominated_by, Names{"as good"});
   EXPECT_EQ(study(outcome("worse", 3, 0.03, 0.001, seeds)).results[1].dominated_by, Names{});
-  EXPECT_EQ(study(outcome("as dear", 4, 0.01, 0.001, seeds)).results[1].dominated_by, Names{});
+  EXPECT_EQ(study(outcome("as dear", 4, 0.01, 0.001, seeds)).results[1].dominated_by, Names{"as dear"});
+  EXPECT_EQ(study(outcome("as dear", 4, 0.01, 0.001, seeds)).results[2].dominated_by, Names{});
+  EXPECT_EQ(study(outcome("dearer", 5, 0.01, 0.001, seeds)).results[1].dominated_by, Names{});
+  // of two that cost the same and are the same within chance, neither is named
+  const SettingsStudy same = study(outcome("the same", 4, 0.02, 0.001, seeds));
+  EXPECT_EQ(same.results[1].perhaps_dominated_by, Names{});
+  EXPECT_EQ(same.results[2].perhaps_dominated_by, Names{});
   EXPECT_EQ(study(outcome("dearer, worse", 5, 0.03, 0.001, seeds)).results[2].dominated_by, Names{"base"});
   // its error is below its floor, which then counts
   EXPECT_EQ(study(outcome("noisy", 3, 0.001, 0.025, seeds)).results[1].dominated_by, Names{});
