@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # examples/law/run.sh [OUT]: the three rungs of the law, calibrated on the shipped data of the paper's size (examples/paper/data),
 # on paths that no fit saw: uniaxial compression and unloading, D2, D3, D2 then D3, cycles of D2, compression with shear, each on
-# three or five new packings of that size. Installs what is missing, builds Release, writes to OUT (./grainlaw-law). About an hour on 2
-# cores; finished simulations in OUT are reused, interrupted ones go on.
+# three to thirty new packings of that size. Installs what is missing, builds Release, writes to OUT (./grainlaw-law). An hour or more on
+# 2 cores; finished simulations in OUT are reused, interrupted ones go on.
 set -euo pipefail
 
 inputs=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
