@@ -13,14 +13,17 @@ constexpr double kLinearStep = 1e-6;  // of a parameter; the quotient's own erro
 
 bool has_error(const Eigen::MatrixXd& influence, Eigen::Index k) { return influence.row(k).squaredNorm() > 0; }
 
-/// d(J^T W^2 misfit) at the stage's solution when the parameters `index` of the law move by each column of `influence`.
+/// d(J^T pull), pull = W^2 misfit where nothing holds it, at the stage's solution when the parameters `index` of the law move by each column of `influence`.
 Eigen::MatrixXd gradient_changes(
     const std::vector<std::size_t>& index, const Eigen::MatrixXd& influence, const LawParameters<double>& law,
     const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at, int threads,
     const Solution& solution) {
   const Eigen::Index rows = solution.misfit.size(), n = solution.x.size();
   const Eigen::VectorXd w2 = solution.weight.cwiseAbs2();
-  const Eigen::VectorXd here = solution.jacobian.transpose() * w2.cwiseProduct(solution.misfit);
+  const auto pull = [&](const Eigen::VectorXd& misfit) -> Eigen::VectorXd {
+    return w2.cwiseProduct(misfit - (1 - solution.pull_slope.array()).matrix().cwiseProduct(misfit - solution.misfit));
+  };
+  const Eigen::VectorXd here = solution.jacobian.transpose() * pull(solution.misfit);
   Eigen::MatrixXd change = Eigen::MatrixXd::Zero(n, influence.cols());
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(rows, n);
   Eigen::VectorXd misfit(rows);
@@ -36,7 +39,7 @@ Eigen::MatrixXd gradient_changes(
     for (std::size_t k = 0; k < index.size(); ++k)
       *field[index[k]] += part * influence(static_cast<Eigen::Index>(k), c);
     if (evaluate(blocks_at(moved), solution.x, threads, misfit.data(), jacobian.data()))
-      change.col(c) = (jacobian.transpose() * w2.cwiseProduct(misfit) - here) / part;
+      change.col(c) = (jacobian.transpose() * pull(misfit) - here) / part;
   }
   return change;
 }
@@ -77,8 +80,9 @@ void inherit_error(const Eigen::VectorXd& slope, const Eigen::RowVectorXd& influ
                    StageFit& second) {
   const Solution& solution = second.solution;
   if (!solution.defined || influence.squaredNorm() == 0) return;
-  add_response(solution.jacobian.transpose() * solution.weight.cwiseAbs2().cwiseProduct(slope) * influence,
-               Eigen::VectorXd::Constant(1, degrees_of_freedom), second);
+  const Eigen::VectorXd moved = solution.weight.cwiseAbs2().cwiseProduct(solution.pull_slope).cwiseProduct(slope);
+  add_response(solution.jacobian.transpose() * moved * influence, Eigen::VectorXd::Constant(1, degrees_of_freedom),
+               second);
 }
 
 void inherit_error(const std::vector<std::string>& groups, const FoundErrors& found, const LawParameters<double>& law,

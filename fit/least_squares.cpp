@@ -227,6 +227,7 @@ Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<R
     solution.weight.segment(row, block.rows()) = block.weight;
     row += block.rows();
   }
+  solution.pull_slope = Eigen::VectorXd::Ones(solution.weight.size());
 
   // Ceres projects steps into the box but does not hold a parameter there, which makes the others crawl. Parameters that
   // a bound holds back are therefore taken out between rounds, and let go again when the cost no longer pushes.

@@ -27,6 +27,7 @@ struct Solution {
   std::vector<bool> at_bound;  ///< per parameter
   Eigen::VectorXd misfit;      ///< model - data of all rows of all blocks in order, unweighted
   Eigen::VectorXd weight;      ///< of these rows
+  Eigen::VectorXd pull_slope;  ///< of these rows: d(w^2 misfit) over w^2 d misfit; 1, or 0 where Huber's loss holds the pull
   Eigen::MatrixXd jacobian;    ///< d misfit/dx
   Eigen::MatrixXd curvature;   ///< fit/curvature.hpp, set by fit_stage
   std::vector<int> cluster;    ///< of these rows

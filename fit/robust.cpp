@@ -81,6 +81,7 @@ Solution solve_huber(const std::vector<FreeParameter>& parameters, const std::ve
       solution.termination += fmt::format(" (weights of Huber's loss still change by {:.2g})", change);
     }
   }
+  solution.pull_slope = (factor.array() < 1).select(Eigen::VectorXd::Zero(factor.size()), solution.pull_slope);
   solution.initial_cost = initial_cost;
   solution.iterations = iterations;
   solution.seconds = seconds;

@@ -31,6 +31,7 @@ Solution at(double level, double rate) {
   solution.x = Eigen::Vector2d(level, rate);
   solution.at_bound = {false, rate == 0.25};
   solution.weight = Eigen::Vector2d(1, 3);
+  solution.pull_slope = Eigen::Vector2d(1, 1);
   solution.misfit.resize(2);
   Eigen::Matrix<double, 2, 2, Eigen::RowMajor> J;
   EXPECT_TRUE(evaluate(growth(), solution.x, 1, solution.misfit.data(), J.data()));
@@ -54,6 +55,14 @@ TEST(Curvature, IsTheWeightedSumOfMisfitsAndTheirSecondDerivatives) {
     EXPECT_EQ(S(0, 1), S(1, 0));
     EXPECT_NEAR(S(1, 1), own, 1e-5 * std::abs(own));
   }
+}
+
+TEST(Curvature, ARowThatIsHeldDoesNotBendTheCost) {
+  Solution solution = at(0.7, 0.2);
+  const Eigen::MatrixXd free = curvature(kParameters, growth(), solution, 1);
+  solution.pull_slope(1) = 0;
+  const Eigen::RowVector2d slope = solution.jacobian.row(1);
+  EXPECT_TRUE(curvature(kParameters, growth(), solution, 1).isApprox(free - 9 * slope.transpose() * slope, 1e-14));
 }
 
 TEST(Curvature, NothingOfAParameterOnItsBound) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
+
+#include "fit/stage_fit.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -42,6 +45,20 @@ TEST(Robust, AnOutlierPullsByNoMoreThanItsShare) {
     EXPECT_LT(s.x(0), 1) << "their mean is " << far / 8;
     EXPECT_NEAR(s.weight(7), std::sqrt(reach / (far - s.x(0))), 2e-3);
   }
+}
+
+// Of white noise, here its quantiles: V = E psi^2/(n P(|u| < c)^2), 1/.95 of that of the mean (Huber 1964).
+TEST(Robust, TheErrorIsThatOfItsEstimate) {
+  constexpr int n = 400;
+  const boost::math::normal normal;
+  std::vector<ResidualBlock> packings;
+  for (int i = 0; i < n; ++i) {
+    packings.push_back(values({quantile(normal, (i + 0.5) / n)}));
+    packings.back().cluster = i;
+  }
+  const StageFit fit = fit_stage("huber", "", {{"x", 0, -100, 100, 1}}, packings, "", 1, {}, {Loss::huber});
+  const double error = fit.stage.estimates[0].estimate.standard_error;
+  EXPECT_NEAR(n * error * error, 1 / 0.95, 0.01);
 }
 
 TEST(Robust, WithoutOutliersItIsTheMean) {
