@@ -2,7 +2,7 @@
 # tests/acceptance/engine.sh [--quick]: the engine's speed beside LAMMPS, its precision and its bits, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
 # --quick: ratios at both densities and precisions on one core, the precision table, hashes over threads and vector
-# instructions, restart points. Otherwise also two cores, a million spheres, and the quickstart's time.
+# instructions, restart points. Otherwise also two cores and a million spheres, both beside LAMMPS, too, and the quickstart's time.
 # Run it alone: speeds are measured side by side on a pinned core. The first run prepares packings (two minutes).
 set -euo pipefail
 
@@ -45,6 +45,19 @@ other_sizes() {
   done
 }
 
+# On two cores, and of a million spheres on one (a hundred steps).
+beside_lammps_elsewhere() {
+  local nu precision
+  $bin/bench_engine --cores 2 "$out" >"$out/two-cores-lammps.txt"
+  taskset -c 0 $bin/bench_engine --tiles 5 --steps 100 "$out" >"$out/million-lammps.txt"
+  for nu in 0.66 0.82; do
+    for precision in mixed double; do
+      figure "ratio.$precision.two_cores.N9261.nu$nu" "$(value_of "ratio.$precision.N9261.nu$nu" "$out/two-cores-lammps.txt")" stated
+      figure "ratio.$precision.N1157625.nu$nu" "$(value_of "ratio.$precision.N1157625.nu$nu" "$out/million-lammps.txt")" stated
+    done
+  done
+}
+
 # The force pass beside its floor: 16 pair evaluations take at least 42 cycles by count (docs/performance.md).
 floor() {
   local json=$out/kernels.json
@@ -68,6 +81,7 @@ figures_of_tests $bin/verification_dem 'Precision*:PortableBits.*:Threads.*' pre
 GRAINLAW_TEST_PRECISION=mixed figures_of_tests $bin/verification_dem 'Restart.R5*:Threads.*' R5.differing_restarts R1.differing_hashes
 if [[ $quick == no ]]; then
   other_sizes
+  beside_lammps_elsewhere
   quickstart
 fi
 finish_figures

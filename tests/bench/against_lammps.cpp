@@ -1,7 +1,8 @@
 // The engine beside Debian's LAMMPS, in turn, on the same packing, the same path and the same number of steps:
-//   bench_engine [--particles N] [--steps K] [--warm-up K] [--nu NU]... FOLDER
+//   bench_engine [--particles N] [--tiles T] [--cores K] [--steps K] [--warm-up K] [--nu NU]... FOLDER
 // Packings are prepared once and kept in FOLDER, then sheared by D2 for the steps of the warm-up before the race begins.
-// Prints figures "NAME VALUE". Run it alone, on one pinned core (taskset -c 1).
+// --tiles: then repeated T times along each axis; --cores: threads of the engine, processes of LAMMPS.
+// Prints figures "NAME VALUE". Run it alone, with one core on a pinned one (taskset -c 1).
 
 #include <fmt/format.h>
 
@@ -46,7 +47,8 @@ double number_after(const std::string& log, const std::string& words) {
   return std::stod(log.substr(at + words.size()));
 }
 
-Result run_lammps(const fs::path& folder, const dem::State& state, const dem::Drive& drive, double dt, int steps) {
+Result run_lammps(const fs::path& folder, const dem::State& state, const dem::Drive& drive, double dt, int steps,
+                  int cores) {
   fs::create_directories(folder);
   const Eigen::Vector3d L = dem::motion_at(drive, 0).L.diagonal();
   std::string commands = referee::packing_commands(folder, state, dem::motion_at(drive, 0).L);
@@ -67,7 +69,7 @@ Result run_lammps(const fs::path& folder, const dem::State& state, const dem::Dr
       "run 0\n"
       "write_dump all custom end.txt id x y z modify sort id format float %.17g\n",
       steps);
-  referee::run_lammps(folder, commands);
+  referee::run_lammps(folder, commands, cores);
   std::ifstream in(folder / "log.txt");
   std::ostringstream text;
   text << in.rdbuf();
@@ -104,30 +106,35 @@ int main(int argc, char** argv) try {
   CLI::App app("The engine beside LAMMPS");
   fs::path folder;
   std::int64_t particles = 9261;
-  int steps = 2000, warm_up = 20000;
+  int tiles = 1, cores = 1, steps = 2000, warm_up = 20000;
   std::vector<double> densities{0.66, 0.82};
   app.add_option("folder", folder)->required();
   app.add_option("--particles", particles);
+  app.add_option("--tiles", tiles)->check(CLI::PositiveNumber);
+  app.add_option("--cores", cores)->check(CLI::PositiveNumber);
   app.add_option("--steps", steps);
   app.add_option("--warm-up", warm_up);
   app.add_option("--nu", densities);
   CLI11_PARSE(app, argc, argv);
 
   for (const double nu : densities) {
-    const dem::State state = bench::warmed_up(bench::packing_at(folder, particles, nu), warm_up);
+    const dem::State state = bench::tiled(bench::warmed_up(bench::packing_at(folder, particles, nu), warm_up), tiles);
+    const std::size_t size = state.packing.size();
     dem::EngineOptions options;
-    const double work = 1e-6 * static_cast<double>(particles) * steps;  // 10^6 particle-steps
+    options.threads = cores;
+    const double work = 1e-6 * static_cast<double>(size) * steps;  // 10^6 particle-steps
     std::map<std::string, Result> results;
     for (const auto& [name, precision] : {std::pair{"mixed", dem::Precision::mixed},
                                           {"double", dem::Precision::full},
                                           {"reference", dem::Precision::reference}}) {
+      if (precision == dem::Precision::reference && tiles > 1) continue;  // plain loops would take minutes
       options.precision = precision;
       results[name] = run_engine(state, options, steps);
     }
     const bench::Sheared path = bench::start_shear(state, options);
-    results["lammps"] = run_lammps(folder / "lammps", state, path.drive, path.sim.dt, steps);
+    results["lammps"] = run_lammps(folder / "lammps", state, path.drive, path.sim.dt, steps, cores);
     for (const auto& [name, r] : results) {
-      const std::string id = fmt::format("{}.N{}.nu{:.2f}", name, particles, nu);
+      const std::string id = fmt::format("{}.N{}.nu{:.2f}", name, size, nu);
       fmt::print("rate.{} {:.2f}\nP_star.{} {:.9g}\nC_star.{} {:.6g}\nsteps_of_a_list.{} {:.0f}\n", id,
                  work / r.seconds, id, r.P_star, id, r.C_star, id, r.steps_of_a_list);
       fmt::print("E_pot.{} {:.9g}\n", id, r.E_pot);

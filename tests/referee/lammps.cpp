@@ -64,12 +64,13 @@ std::string packing_commands(const fs::path& folder, const dem::State& state, co
       state.material.stiffness, state.material.contact_viscosity, 0.1 * mean_radius(state.packing));
 }
 
-void run_lammps(const fs::path& folder, const std::string& commands) {
+void run_lammps(const fs::path& folder, const std::string& commands, int cores) {
   std::ofstream(folder / "in.txt") << commands;
+  const std::string launcher =
+      cores == 1 ? "OMPI_MCA_btl=self" : fmt::format("mpirun --allow-run-as-root --mca btl self,vader -np {}", cores);
   const std::string command = fmt::format(
-      "cd '{}' && OMP_NUM_THREADS=1 OMPI_MCA_btl=self lmp -in in.txt -log log.txt -screen none >out.txt 2>&1 "
-      "</dev/null",
-      folder.string());
+      "cd '{}' && export OMP_NUM_THREADS=1 && {} lmp -in in.txt -log log.txt -screen none >out.txt 2>&1 </dev/null",
+      folder.string(), launcher);
   if (std::system(command.c_str()) == 0) return;
   const std::string log = content(folder / "log.txt");
   ADD_FAILURE() << "lmp failed:\n"

@@ -23,8 +23,8 @@ std::string lammps_missing();
 /// that read it and state the contact law.
 std::string packing_commands(const std::filesystem::path& folder, const dem::State& state, const Eigen::Matrix3d& L);
 
-/// Runs the commands in `folder`. Fails the running test with the end of LAMMPS's log when it does not succeed.
-void run_lammps(const std::filesystem::path& folder, const std::string& commands);
+/// Runs the commands in `folder`, on several cores by `mpirun`. Fails the running test with the end of LAMMPS's log when it does not succeed.
+void run_lammps(const std::filesystem::path& folder, const std::string& commands, int cores = 1);
 
 /// Rows of a file that consist of numbers alone; the others are headers.
 std::vector<std::vector<double>> rows_of_numbers(const std::filesystem::path& file);
