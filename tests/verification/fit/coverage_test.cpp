@@ -32,6 +32,15 @@ TEST_P(Coverage, F3IsotropicLawsFromCorrelatedRows) {
 
 INSTANTIATE_TEST_SUITE_P(Packings, Coverage, ::testing::Values(3, 5, 10));
 
+// The intervals of Huber's loss (F7), by the same lines.
+TEST(CoverageByHubersLoss, F7IsotropicLaws) {
+  const CoverageStudy white{1000, 10, 0, 0, 40000, fit::Loss::huber};
+  testing::expect_coverage("F7.isotropic." + white.name(), testing::coverage_of_isotropic_laws(white), 0.93, 0.97);
+  const CoverageStudy correlated{1000, 3, 0.9, 0, 50000, fit::Loss::huber};
+  testing::expect_coverage("F7.isotropic." + correlated.name(), testing::coverage_of_isotropic_laws(correlated), 0.90,
+                           1);
+}
+
 // 40 sets: were an interval to hold 90 % only, as many as 11 misses would happen to one parameter in 800; 14 to one in 10^5.
 TEST(CoverageOfAll, F3ACompleteCalibrationInReducedNumber) {
   const CoverageStudy study{40, 3, 0.9, 0, 70000};
