@@ -13,24 +13,28 @@ mkdir -p "$out"
 
 deviation() { awk -v a="$1" -v b="$2" 'BEGIN { d = b + 0 != 0 ? a / b - 1 : "missing"; print d < 0 ? -d : d }'; }
 
-# Same packing, same steps, same core; the results must agree before a ratio means anything.
-beside_lammps() {
-  local nu id other log=$out/one-core.txt
-  taskset -c 0 $bin/bench_engine "$out" >"$log" 2>"$log.err" || tail -3 "$log.err" >&2
+# Same packing, same steps, same cores; the results must agree before a ratio means anything.
+beside_lammps() { # log-of-bench_engine particles infix-of-the-names bound-of-mixed bound-of-double
+  local log=$1 infix=$3 nu id precision quantity
   for nu in 0.66 0.82; do
-    id=N9261.nu$nu other=$(value_of "P_star.lammps.N9261.nu$nu" "$log")
-    figure "rate.lammps.$id" "$(value_of "rate.lammps.$id" "$log")" stated
+    id=$2.nu$nu
+    figure "rate.lammps.$infix$id" "$(value_of "rate.lammps.$id" "$log")" stated
     for precision in mixed double; do
-      figure "rate.$precision.$id" "$(value_of "rate.$precision.$id" "$log")" stated
-      figure "P_star.$precision.$id.off_lammps" "$(deviation "$(value_of "P_star.$precision.$id" "$log")" "$other")" "<=0.02"
-      figure "E_pot.$precision.$id.off_lammps" "$(deviation "$(value_of "E_pot.$precision.$id" "$log")" \
-        "$(value_of "E_pot.lammps.$id" "$log")")" "<=0.02"
-      figure "C_star.$precision.$id.off_lammps" "$(deviation "$(value_of "C_star.$precision.$id" "$log")" \
-        "$(value_of "C_star.lammps.$id" "$log")")" "<=0.02"
+      figure "rate.$precision.$infix$id" "$(value_of "rate.$precision.$id" "$log")" stated
+      for quantity in P_star E_pot C_star; do
+        figure "$quantity.$precision.$infix$id.off_lammps" "$(deviation "$(value_of "$quantity.$precision.$id" "$log")" \
+          "$(value_of "$quantity.lammps.$id" "$log")")" "<=0.02"
+      done
     done
-    figure "ratio.mixed.$id" "$(value_of "ratio.mixed.$id" "$log")" ">=10"
-    figure "ratio.double.$id" "$(value_of "ratio.double.$id" "$log")" ">=3"
+    figure "ratio.mixed.$infix$id" "$(value_of "ratio.mixed.$id" "$log")" "$4"
+    figure "ratio.double.$infix$id" "$(value_of "ratio.double.$id" "$log")" "$5"
   done
+}
+
+beside_lammps_on_one_core() {
+  local log=$out/one-core.txt
+  taskset -c 0 $bin/bench_engine "$out" >"$log" 2>"$log.err" || tail -3 "$log.err" >&2
+  beside_lammps "$log" N9261 "" ">=10" ">=3"
 }
 
 other_sizes() {
@@ -47,15 +51,11 @@ other_sizes() {
 
 # On two cores, and of a million spheres on one (a hundred steps).
 beside_lammps_elsewhere() {
-  local nu precision
-  $bin/bench_engine --cores 2 "$out" >"$out/two-cores-lammps.txt"
-  taskset -c 0 $bin/bench_engine --tiles 5 --steps 100 "$out" >"$out/million-lammps.txt"
-  for nu in 0.66 0.82; do
-    for precision in mixed double; do
-      figure "ratio.$precision.two_cores.N9261.nu$nu" "$(value_of "ratio.$precision.N9261.nu$nu" "$out/two-cores-lammps.txt")" stated
-      figure "ratio.$precision.N1157625.nu$nu" "$(value_of "ratio.$precision.N1157625.nu$nu" "$out/million-lammps.txt")" stated
-    done
-  done
+  local cores=$out/two-cores-lammps.txt million=$out/million-lammps.txt
+  $bin/bench_engine --cores 2 "$out" >"$cores" 2>"$cores.err" || tail -3 "$cores.err" >&2
+  taskset -c 0 $bin/bench_engine --tiles 5 --steps 100 "$out" >"$million" 2>"$million.err" || tail -3 "$million.err" >&2
+  beside_lammps "$cores" N9261 two_cores. stated stated
+  beside_lammps "$million" N1157625 "" stated stated
 }
 
 # The force pass beside its floor: 16 pair evaluations take at least 42 cycles by count (docs/performance.md).
@@ -74,7 +74,7 @@ quickstart() {
   figure quickstart.seconds "$(sed -n 's/^Whole chain after the build: \([0-9]*\) s.*/\1/p' "$out/quickstart.txt")" "<=120"
 }
 
-beside_lammps
+beside_lammps_on_one_core
 floor
 figures_of_tests $bin/verification_dem 'Precision*:PortableBits.*:Threads.*' precision.mixed.force precision.mixed.P_star \
   precision.statistics R2.differing_targets R1.differing_hashes
