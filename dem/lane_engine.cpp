@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRounding = 1e-5;  // of distances in single precision
 
-// Near skins of spheres: for so many steps at their speed, the rest over the list's skin. Measured, docs/performance.md.
+// Near skins of spheres: for so many steps at their speed, the rest over the list's skin. Measured, docs/performance-log.md.
 constexpr double kNearSteps = 70, kNearMemory = 0.92, kLeastNearSkin = 0.05, kMostNearSkin = 0.3;
 // A list is made when two spheres may have come so near each other that less than this is left for their near skins together.
 constexpr double kLeftForNear = 0.15;
