@@ -198,7 +198,7 @@ void find_dominated(SettingsStudy& study, const std::vector<LeftOut>& left_out) 
     }
     for (const std::size_t j : rivals) {
       const bool as_dear = results[j].outcome.cost.particle_steps == one.outcome.cost.particle_steps;
-      if (!(results[j].reached <= one.reached)) continue;
+      if (as_dear ? !(results[j].reached < one.reached) : !(results[j].reached <= one.reached)) continue;
       if (beyond_chance(results, i, j, rivals.size(), left_out)) {
         one.dominated_by.push_back(results[j].outcome.name);
       } else if (!as_dear) {

@@ -125,6 +125,16 @@ TEST(SettingsStudy, ADefaultIsDominatedByWhatCostsNoMoreAndIsBetter) {
   const SettingsStudy same = study(outcome("the same", 4, 0.02, 0.001, seeds));
   EXPECT_EQ(same.results[1].perhaps_dominated_by, Names{});
   EXPECT_EQ(same.results[2].perhaps_dominated_by, Names{});
+  EXPECT_EQ(same.results[1].dominated_by, Names{});
+  EXPECT_EQ(same.results[2].dominated_by, Names{});
+  // nor where there is no chance at all, as of the reference's own settings by another name; unless one is cheaper
+  const auto certain = [&](double cost) {
+    return study_of("dem", "", Packings::chosen, {},
+                    {outcome("reference", 4, 0, 0, seeds), outcome("twin", cost, 0, 0, seeds)}, 0);
+  };
+  EXPECT_EQ(certain(4).results[0].dominated_by, Names{});
+  EXPECT_EQ(certain(4).results[1].dominated_by, Names{});
+  EXPECT_EQ(certain(3).results[0].dominated_by, Names{"twin"});
   EXPECT_EQ(study(outcome("dearer, worse", 5, 0.03, 0.001, seeds)).results[2].dominated_by, Names{"base"});
   // its error is below its floor, which then counts
   EXPECT_EQ(study(outcome("noisy", 3, 0.001, 0.025, seeds)).results[1].dominated_by, Names{});
