@@ -16,7 +16,7 @@ namespace {
 constexpr double kWidth = 960;
 constexpr double kCharacterWidth = 6.6;
 constexpr double kLegendRow = 20, kLegendKey = 30, kLegendGap = 22;
-constexpr double kLeft = 74, kLeftShared = 14, kRight = 10;
+constexpr double kLeft = 74, kLeftShared = 8, kRight = 16;  // half of a label to the right
 constexpr double kTitle = 22, kBottom = 44, kBottomShared = 12;
 
 struct Box {

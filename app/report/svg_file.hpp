@@ -1,5 +1,5 @@
 #pragma once
-// A figure as a file of its own, in the colours of the page.
+// A figure as a file of its own, in the colours of the page; light ones in viewers without CSS variables.
 
 #include <filesystem>
 

@@ -10,7 +10,8 @@ namespace {
 constexpr std::array kMarkers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond, Marker::plus};
 constexpr std::array kColours{Colour::blue, Colour::green, Colour::purple, Colour::orange, Colour::sky};
 
-/// `number`: of the setting; neighbours differ in symbol and colour, the sixth to tenth are outlines.
+/// `number`: of the setting. Neighbours differ in symbol and colour; the sixth to tenth are outlines, and each five have their
+/// symbols in the colours of their neighbours before.
 Series point_of(const SettingResult& r, std::size_t number) {
   Series series;
   series.label = plain(r.outcome.name);
@@ -21,7 +22,7 @@ Series point_of(const SettingResult& r, std::size_t number) {
   series.open_marker = number / kMarkers.size() % 2 == 1;
   series.marker_size = 4;
   series.colour = r.dominated_by.empty() && !near_the_stop(r.outcome.energy_residual)
-                      ? kColours[number % kColours.size()]
+                      ? kColours[(number + number / kMarkers.size()) % kColours.size()]
                       : Colour::grey;
   return series;
 }

@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <tuple>
+
 #include "app/files/schema.hpp"
 #include "app/report/svg_figure.hpp"
+#include "app/report/svg_file.hpp"
 #include "app/study/figure_study.hpp"
 #include "app/study/study_json.hpp"
 #include "app/study/study_table.hpp"
 #include "model/student.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -79,6 +84,32 @@ TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
   for (std::size_t i = 0; i < shade.x.size(); ++i)
     EXPECT_NEAR(shade.y[i] + shade.bands[0][i], student_95(2) * 0.005 * std::sqrt(3.0), 1e-12);
   EXPECT_NE(render_svg(figure_of(study(1.1))).svg.find("class=\"band\""), std::string::npos);
+}
+
+TEST(StudyFiles, NoTwoSettingsOfTheFigureLookAlike) {
+  using namespace report;
+  std::vector<SettingOutcome> outcomes{outcome("base", 1e9, 1)};
+  for (int i = 0; i < 15; ++i) outcomes.push_back(outcome("cheap " + std::to_string(i), 5e8, 1.1));
+  const Panel panel = figure_of(study_of("chain", "in words", Packings::chosen, {}, outcomes, 0)).panels.front();
+  std::set<std::tuple<Marker, Colour, bool>> looks;
+  for (const Series& s : panel.series) {
+    if (s.marker != Marker::none) looks.insert({s.marker, s.colour, s.open_marker && s.marker != Marker::plus});
+  }
+  EXPECT_EQ(looks.size(), 16u);
+}
+
+using StudyFilesInAFolder = testing::TemporaryFolder;
+
+// Image viewers know no CSS variables: each colour is given to them as a number first.
+TEST_F(StudyFilesInAFolder, TheFigureHasItsColoursInEveryViewer) {
+  const std::filesystem::path file = folder_ / "settings.svg";
+  report::write_svg(file, report::figure_of(study(1.1)));
+  const std::string svg = content(file);
+  EXPECT_NE(svg.find("svg text { fill: #1b1b1b; fill: var(--text); }"), std::string::npos);
+  EXPECT_NE(svg.find(" .k7 { color: #5c5c5c; color: var(--quiet); }"), std::string::npos);
+  EXPECT_NE(svg.find("html { background: #ffffff; background: var(--ground); color: #1b1b1b; color: var(--text); "),
+            std::string::npos);
+  EXPECT_NE(svg.find("svg { background: #ffffff; background: var(--ground); }"), std::string::npos);
 }
 
 }  // namespace
