@@ -122,6 +122,10 @@ TEST(SettingsStudy, ADefaultIsDominatedByWhatCostsNoMoreAndIsBetter) {
   EXPECT_EQ(study(outcome("as dear", 4, 0.01, 0.001, seeds)).results[2].dominated_by, Names{});
   EXPECT_EQ(study(outcome("dearer", 5, 0.01, 0.001, seeds)).results[1].dominated_by, Names{});
   // of two that cost the same and are the same within chance, neither is named
+  const SettingsStudy alike = study(outcome("alike", 4, 0.0199, 0.001, seeds));
+  EXPECT_LT(alike.results[2].reached, alike.results[1].reached);
+  EXPECT_EQ(alike.results[1].dominated_by, Names{});
+  EXPECT_EQ(alike.results[1].perhaps_dominated_by, Names{});
   const SettingsStudy same = study(outcome("the same", 4, 0.02, 0.001, seeds));
   EXPECT_EQ(same.results[1].perhaps_dominated_by, Names{});
   EXPECT_EQ(same.results[2].perhaps_dominated_by, Names{});
