@@ -82,8 +82,11 @@ struct PanelRenderer {
   std::string clip;  ///< id of the clip path
   int undefined = 0, outside = 0;
 
-  double px(double value) const { return box.left + x.fraction(value) * box.width; }
-  double py(double value) const { return box.top + (1 - y.fraction(value)) * box.height; }
+  double px(double value) const { return box.left + near(x.fraction(value)) * box.width; }
+  double py(double value) const { return box.top + (1 - near(y.fraction(value))) * box.height; }
+
+  /// Far outside is as good as just outside, and keeps the numbers in the file small.
+  static double near(double fraction) { return std::clamp(fraction, -3.0, 4.0); }
 
   std::string frame() const {
     const double bottom = box.top + box.height, right = box.left + box.width;
@@ -162,12 +165,10 @@ struct PanelRenderer {
         if (!runs.back().empty()) runs.emplace_back();
         continue;
       }
-      // Far outside is as good as just outside, and keeps the numbers in the file small.
-      const double far = 3 * (box.width + box.height);
-      PixelPoint p{std::clamp(px(vx), -far, far), std::clamp(py(vy), -far, far), 0, 0};
+      PixelPoint p{px(vx), py(vy), 0, 0};
       if (i < series.y_error.size() && y.defined_at(vy - series.y_error[i]) && series.y_error[i] > 0) {
-        p.y_low = std::clamp(py(vy - series.y_error[i]), -far, far);
-        p.y_high = std::clamp(py(vy + series.y_error[i]), -far, far);
+        p.y_low = py(vy - series.y_error[i]);
+        p.y_high = py(vy + series.y_error[i]);
       }
       runs.back().push_back(p);
       if (within(vx, vy)) {

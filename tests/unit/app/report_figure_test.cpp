@@ -108,6 +108,29 @@ TEST(ReportFigure, PanelsShareAxesOnRequest) {
   EXPECT_EQ(count(svg, ">line</text>"), 1);  // one entry in the legend
 }
 
+// Of each "`words`NUMBER`between`NUMBER" the second number.
+std::vector<double> second_numbers(const std::string& text, const std::string& words, const std::string& between) {
+  std::vector<double> numbers;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+    numbers.push_back(std::stod(text.substr(text.find(between, at + words.size()) + between.size())));
+  return numbers;
+}
+
+// A symbol lies at the same height above its frame in every one of many rows of panels.
+TEST(ReportFigure, DataStayInTheirPanelHoweverFarDown) {
+  Series series = line_of({0, 1}, {0, 1});
+  series.line = Line::none;
+  Figure figure = one_panel(series);
+  figure.panels.assign(30, figure.panels[0]);
+  figure.columns = 1;
+  const std::string svg = render_svg(figure).svg;
+  const std::vector<double> top = second_numbers(svg, "<rect class=\"axis\" x=\"", "\" y=\""),
+                            symbol = second_numbers(svg, "<title>line</title><path d=\"M", " ");
+  ASSERT_EQ(top.size(), 30u);
+  ASSERT_EQ(symbol.size(), 30u);
+  for (std::size_t i = 0; i < top.size(); ++i) EXPECT_NEAR(symbol[i] - top[i], symbol[0] - top[0], 0.02) << i;
+}
+
 TEST(ReportFigure, HostileLabelsAndNamesStayText) {
   const std::string hostile = "</script><script>alert(1)</script>\"><img src=x onerror=alert(1)> & \xE2\x80\xA8 \x01";
   Figure figure = one_panel(line_of({0, 1}, {0, 1}));
