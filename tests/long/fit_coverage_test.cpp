@@ -1,8 +1,8 @@
 // Hard cases F2 and F3 for the complete calibration, all stages up to memory, 1000 data sets each: white noise of 1 %, noise
 // correlated from row to row, and packings that differ as a whole. Pass lines 93-97 % for white noise and 90 % otherwise. Of five
 // white packings 2000: by the first 1000 chi was covered by 92.8 %, by the others 95.2 %; 1000 leave the least of 41 to chance.
-// By Huber's loss (F7) 300 sets of packings that differ: its intervals of kappa and lambda hold 86 to 89 %, less than they say
-// (docs/validation.md), so that its line, 85 %, guards what is known and is no goal.
+// By Huber's loss (F7) 300 sets of packings that differ, by the same line, which it does not meet: its intervals of kappa and lambda
+// hold 88 and 86 % (docs/validation.md).
 
 #include <gtest/gtest.h>
 
@@ -19,12 +19,11 @@ TEST_P(Coverage, F2F3CompleteCalibration) {
   const CoverageStudy& study = GetParam();
   const testing::Coverage coverage = testing::coverage_of_calibration(study);
   const bool white = study.correlation == 0 && study.packing_scatter == 0;
-  const bool robust = study.loss == fit::Loss::huber;
-  const std::string name = (robust ? "F7." : white ? "F2." : "F3.") + study.name();
+  const std::string name = (study.loss == fit::Loss::huber ? "F7." : white ? "F2." : "F3.") + study.name();
   testing::coverage_table(name, coverage);
   ASSERT_EQ(coverage.counts().size(), kParameterCount - 4);  // nu_c of shear, m, g and a0 are not fitted
   for (const auto& [parameter, count] : coverage.counts()) EXPECT_EQ(count.sets, study.sets) << parameter;
-  const double least = white ? 0.93 : robust ? 0.85 : 0.90, most = white ? 0.97 : 1;
+  const double least = white ? 0.93 : 0.90, most = white ? 0.97 : 1;
   testing::expect_coverage(name, coverage, least, most);
 }
 
