@@ -20,7 +20,7 @@
 #include "app/one_line.hpp"
 #include "app/report/report.hpp"
 #include "app/session.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

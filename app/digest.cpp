@@ -9,7 +9,7 @@
 #include <cstring>
 #include <memory>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "app/exit_code.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

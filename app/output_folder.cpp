@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "dem/durable_file.hpp"
-#include "model/error.hpp"
+#include "model/files/durable_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 
@@ -28,7 +28,7 @@ void make_output_folder(const fs::path& root) {
   }
   fs::create_directories(root, error);
   if (error) throw Error(fmt::format("{}: cannot be created: {}", root.string(), error.message()));
-  dem::remove_leftovers(root);
+  remove_leftovers(root);
 }
 
 fs::path make_subfolder(const fs::path& root, const std::string& name) {
@@ -47,7 +47,7 @@ fs::path make_subfolder(const fs::path& root, const std::string& name) {
   }
   fs::create_directory(folder, error);
   if (error) throw Error(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
-  dem::remove_leftovers(folder);
+  remove_leftovers(folder);
   return folder;
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "model/run_control.hpp"
+#include "model/vocabulary/run_control.hpp"
 
 namespace grainlaw::app {
 

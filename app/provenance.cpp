@@ -9,7 +9,7 @@
 
 #include <ctime>
 
-#include "dem/engine_version.hpp"
+#include "dem/engine/engine_version.hpp"
 #include "grainlaw_build_info.hpp"
 
 namespace grainlaw::app {

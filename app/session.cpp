@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 

@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
-set(installed_headers ${CMAKE_INSTALL_INCLUDEDIR}/grainlaw)  # "dem/packing.hpp" is found in there
+set(installed_headers ${CMAKE_INSTALL_INCLUDEDIR}/grainlaw)  # "dem/engine/packing.hpp" is found in there
 set(installed_package ${CMAKE_INSTALL_LIBDIR}/cmake/grainlaw)
 
 foreach(room IN ITEMS model dem fit predict)

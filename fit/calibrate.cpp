@@ -7,12 +7,12 @@
 #include <limits>
 
 #include "fit/data_set.hpp"
-#include "fit/density_law_fit.hpp"
-#include "fit/evolution_fit.hpp"
-#include "fit/lode_fit.hpp"
-#include "fit/memory_fit.hpp"
-#include "fit/outliers.hpp"
-#include "fit/staged_laws.hpp"
+#include "fit/stages/density_law_fit.hpp"
+#include "fit/stages/evolution_fit.hpp"
+#include "fit/stages/lode_fit.hpp"
+#include "fit/stages/memory_fit.hpp"
+#include "fit/statistics/outliers.hpp"
+#include "fit/stages/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {

@@ -14,13 +14,13 @@
 #include <string_view>
 #include <vector>
 
-#include "fit/inherited_error.hpp"
+#include "fit/statistics/inherited_error.hpp"
 #include "fit/options.hpp"
 #include "fit/outcome.hpp"
-#include "fit/packing_scatter.hpp"
+#include "fit/statistics/packing_scatter.hpp"
 #include "model/parameters.hpp"
-#include "model/run_control.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/run_control.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::fit {
 

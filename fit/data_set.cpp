@@ -9,7 +9,7 @@
 #include <set>
 
 #include "fit/row_checks.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::fit {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "fit/options.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::fit {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "fit/data_set.hpp"
-#include "fit/density_series.hpp"
-#include "fit/staged_laws.hpp"
+#include "fit/stages/density_series.hpp"
+#include "fit/stages/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::fit {
 namespace {

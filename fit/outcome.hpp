@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::fit {
 

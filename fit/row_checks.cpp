@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::fit {
 namespace {

@@ -7,7 +7,7 @@
 // Two relations hold for any packing of soft spheres, within factors that depend on the size distribution:
 //   P* = g_p nu C <delta>/(2 pi <r>), g_p = 0.7 ... 1;  F_v = g3 nu C, g3 = 1 ... 1.5
 
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::fit {
 

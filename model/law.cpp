@@ -1,6 +1,6 @@
 #include "model/law.hpp"
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 

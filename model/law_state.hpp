@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "model/tensor.hpp"
+#include "model/vocabulary/tensor.hpp"
 
 namespace grainlaw {
 

@@ -1,6 +1,6 @@
 #include "model/parameters.hpp"
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 

@@ -4,7 +4,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 

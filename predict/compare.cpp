@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::predict {
 namespace {

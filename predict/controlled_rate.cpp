@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::predict {
 namespace {

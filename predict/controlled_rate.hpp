@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/law.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::predict {
 

@@ -1,6 +1,6 @@
 // Eq. (16), with or without memory, at the points of a path.
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/path_integration.hpp"
 #include "predict/path_states.hpp"
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <optional>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/controlled_rate.hpp"
-#include "predict/cvode.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "predict/path_integration.hpp"
 #include "predict/path_states.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/path_states.hpp"
 
 namespace grainlaw::predict {

@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "predict/cvode.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "predict/path_states.hpp"
 #include "predict/predict.hpp"
 #include "predict/segment_law.hpp"

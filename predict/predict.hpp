@@ -6,16 +6,16 @@
 // On request with the derivatives of every row to parameters of the law: closed form by central differences, the others
 // by CVODES' forward sensitivities (segment_sensitivity.hpp).
 // Dimensionless (*) throughout; strain tension positive, stress and fabric compression positive. The deviators are the
-// 5-vectors of model/tensor.hpp.
+// 5-vectors of model/vocabulary/tensor.hpp.
 
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "model/law.hpp"
-#include "model/path.hpp"
-#include "model/run_control.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/path.hpp"
+#include "model/vocabulary/run_control.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::predict {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "model/reduced_law.hpp"
 #include "predict/path_states.hpp"
 

@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "model/law.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::predict {
 

@@ -18,7 +18,7 @@
 #include "app/runs/dataset_runs.hpp"
 #include "fit/calibrate.hpp"
 #include "fit/leave_one_out.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

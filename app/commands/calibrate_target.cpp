@@ -13,7 +13,7 @@
 #include "app/plan/plan_file.hpp"
 #include "app/plan/plan_pilot.hpp"
 #include "app/plan/planned_spec.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -14,7 +14,7 @@
 #include "app/runs/adopted_dataset.hpp"
 #include "app/runs/new_packings.hpp"
 #include "app/uncertainty.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/mixed_control.hpp"
 #include "predict/rung_advice.hpp"
 

@@ -14,10 +14,10 @@
 #include "app/output_folder.hpp"
 #include "app/runs/job_list.hpp"
 #include "app/runs/runs.hpp"
-#include "dem/durable_file.hpp"
-#include "dem/sphere_table.hpp"
-#include "dem/state_file.hpp"
-#include "model/error.hpp"
+#include "model/files/durable_file.hpp"
+#include "dem/files/sphere_table.hpp"
+#include "dem/files/state_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -105,7 +105,7 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
                                  const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& file : record.at("files").items()) {
-    dem::copy_durably(store.folder(key) / file.key(), folder / file.key());
+    copy_durably(store.folder(key) / file.key(), folder / file.key());
     names.push_back(file.key());
   }
   return names;

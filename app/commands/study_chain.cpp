@@ -12,7 +12,7 @@
 #include "app/study/study_json.hpp"
 #include "app/study/study_output.hpp"
 #include "app/study/study_table.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

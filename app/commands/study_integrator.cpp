@@ -9,8 +9,8 @@
 #include "app/output_folder.hpp"
 #include "app/study/study_output.hpp"
 #include "app/study/work_precision.hpp"
-#include "model/error.hpp"
-#include "predict/batch.hpp"
+#include "model/vocabulary/error.hpp"
+#include "predict/studies/batch.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::app {

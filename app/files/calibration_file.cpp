@@ -8,9 +8,9 @@
 #include "app/files/estimate_json.hpp"
 #include "app/files/fit_checks_json.hpp"
 #include "app/one_line.hpp"
-#include "fit/curve_error.hpp"
+#include "fit/statistics/curve_error.hpp"
 #include "model/density_curves.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

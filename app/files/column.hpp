@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "model/tensor.hpp"
+#include "model/vocabulary/tensor.hpp"
 
 namespace grainlaw::app {
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "app/one_line.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 

@@ -9,7 +9,7 @@
 #include "app/files/schema.hpp"
 #include "app/files/series_csv.hpp"
 #include "app/one_line.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/files/json_document.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "dem/drive.hpp"
-#include "model/error.hpp"
+#include "dem/element_tests/drive.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 

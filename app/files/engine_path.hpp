@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::app {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "app/one_line.hpp"
-#include "dem/durable_file.hpp"
-#include "model/error.hpp"
+#include "model/files/durable_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -226,7 +226,7 @@ void write_json(const std::filesystem::path& file, const OrderedJson& document) 
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file.string(), error.what()));
   }
-  dem::write_durably(file, text);
+  write_durably(file, text);
 }
 
 OrderedJson number_or_null(double value) { return std::isnan(value) ? OrderedJson(nullptr) : OrderedJson(value); }

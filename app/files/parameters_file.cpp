@@ -8,7 +8,7 @@
 #include "app/files/estimate_json.hpp"
 #include "app/files/schema.hpp"
 #include "app/one_line.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -6,7 +6,7 @@
 #include "app/files/path_json.hpp"
 #include "app/files/schema.hpp"
 #include "app/one_line.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/files/json_document.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::app {
 

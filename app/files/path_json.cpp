@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -3,7 +3,7 @@
 // extent | cycles}]}. Cycles are written out as segments when they are read.
 
 #include "app/files/json_document.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::app {
 

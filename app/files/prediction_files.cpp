@@ -8,7 +8,7 @@
 #include "app/files/series_csv.hpp"
 #include "app/one_line.hpp"
 #include "app/output_folder.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/quasi_static_test.hpp"
-#include "model/error.hpp"
+#include "dem/element_tests/quasi_static_test.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

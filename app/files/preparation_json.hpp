@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/files/json_document.hpp"
-#include "dem/preparation.hpp"
+#include "dem/element_tests/preparation.hpp"
 
 namespace grainlaw::app {
 

@@ -2,7 +2,7 @@
 // The columns of probes.csv, declared once (docs/formats.md is checked against them), and its text.
 
 #include "app/files/column.hpp"
-#include "model/probe_row.hpp"
+#include "model/vocabulary/probe_row.hpp"
 
 namespace grainlaw::app {
 

@@ -10,7 +10,7 @@
 #include "app/files/schema_validator.hpp"
 #include "app/one_line.hpp"
 #include "grainlaw_schemas.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

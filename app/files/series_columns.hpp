@@ -3,7 +3,7 @@
 // and meaning (docs/formats.md is checked against these tables).
 
 #include "app/files/column.hpp"
-#include "model/observation.hpp"
+#include "model/vocabulary/observation.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::app {

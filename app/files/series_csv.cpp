@@ -9,8 +9,8 @@
 #include "app/files/csv_table.hpp"
 #include "app/files/series_columns.hpp"
 #include "app/one_line.hpp"
-#include "dem/durable_file.hpp"
-#include "model/error.hpp"
+#include "model/files/durable_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -156,7 +156,7 @@ class SeriesReader {
 std::string series_text(const std::vector<Observation>& rows) { return table_text(rows, observation_columns()); }
 
 void write_series(const std::filesystem::path& file, const std::vector<Observation>& rows) {
-  dem::write_durably(file, series_text(rows));
+  write_durably(file, series_text(rows));
 }
 
 std::vector<Observation> read_series(const std::filesystem::path& file, const Path& path, const PackingInfo& packing) {
@@ -164,7 +164,7 @@ std::vector<Observation> read_series(const std::filesystem::path& file, const Pa
 }
 
 void write_prediction_series(const std::filesystem::path& file, const std::vector<predict::PredictedRow>& rows) {
-  dem::write_durably(file, table_text(rows, prediction_columns()));
+  write_durably(file, table_text(rows, prediction_columns()));
 }
 
 std::vector<predict::PredictedRow> read_prediction_series(const std::filesystem::path& file) {

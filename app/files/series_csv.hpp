@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::app {

@@ -11,7 +11,7 @@
 #include "app/files/schema.hpp"
 #include "app/one_line.hpp"
 #include "app/output_folder.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "app/files/json_document.hpp"
 #include "app/files/probe_json.hpp"
-#include "dem/preparation.hpp"
+#include "dem/element_tests/preparation.hpp"
 #include "model/parameters.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app {
 

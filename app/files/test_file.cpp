@@ -8,9 +8,9 @@
 #include "app/files/preparation_json.hpp"
 #include "app/files/schema.hpp"
 #include "app/one_line.hpp"
-#include "dem/sphere_table.hpp"
-#include "dem/state_file.hpp"
-#include "model/error.hpp"
+#include "dem/files/sphere_table.hpp"
+#include "dem/files/state_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

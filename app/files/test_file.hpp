@@ -7,8 +7,8 @@
 #include <string>
 
 #include "app/files/probe_json.hpp"
-#include "dem/preparation.hpp"
-#include "model/path.hpp"
+#include "dem/element_tests/preparation.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::app {
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "fit/options.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

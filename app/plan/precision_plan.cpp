@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::app {

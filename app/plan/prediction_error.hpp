@@ -12,8 +12,8 @@
 
 #include "fit/calibrate.hpp"
 #include "model/law.hpp"
-#include "model/path.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/path.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "fit/curve_error.hpp"
+#include "fit/statistics/curve_error.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::app {

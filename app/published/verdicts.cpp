@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "fit/curve_error.hpp"
+#include "fit/statistics/curve_error.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::app {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/report/figure.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app::report {
 

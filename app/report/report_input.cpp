@@ -7,7 +7,7 @@
 #include "app/digest.hpp"
 #include "app/files/calibration_file.hpp"
 #include "app/files/parameters_file.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app::report {
 namespace {

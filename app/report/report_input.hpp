@@ -9,7 +9,7 @@
 #include "app/files/prediction_files.hpp"
 #include "app/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app::report {
 

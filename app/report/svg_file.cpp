@@ -4,7 +4,7 @@
 
 #include "app/report/page.hpp"
 #include "app/report/svg_figure.hpp"
-#include "dem/durable_file.hpp"
+#include "model/files/durable_file.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -37,7 +37,7 @@ void write_svg(const std::filesystem::path& file, const Figure& figure) {
   svg.insert(svg.find('>') + 1,
              "\n<style><![CDATA[" +
                  with_plain_colours(page_style() + std::string("svg { background: var(--ground); }")) + "]]></style>");
-  dem::write_durably(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg);
+  write_durably(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg);
 }
 
 }  // namespace grainlaw::app::report

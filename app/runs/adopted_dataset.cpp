@@ -6,8 +6,8 @@
 
 #include "app/files/path_json.hpp"
 #include "app/output_folder.hpp"
-#include "dem/durable_file.hpp"
-#include "model/error.hpp"
+#include "model/files/durable_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 
@@ -25,11 +25,11 @@ Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) 
   if (fs::equivalent(from, to, error)) return dataset;
   for (const DatasetTest& test : dataset.tests) {
     const std::string file = test.record.name + ".csv";
-    dem::copy_durably(from / file, to / file);
+    copy_durably(from / file, to / file);
     if (!test.probes_sha256.empty())
-      dem::copy_durably(from / kProbesFolder / file, make_subfolder(to, kProbesFolder) / file);
+      copy_durably(from / kProbesFolder / file, make_subfolder(to, kProbesFolder) / file);
   }
-  dem::copy_durably(from / "dataset.json", to / "dataset.json");
+  copy_durably(from / "dataset.json", to / "dataset.json");
   return read_dataset(to);
 }
 

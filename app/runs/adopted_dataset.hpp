@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "app/files/dataset.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::app {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/runs/run_store.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 

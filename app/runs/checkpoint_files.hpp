@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "dem/checkpoint.hpp"
+#include "dem/files/checkpoint.hpp"
 
 namespace grainlaw::app {
 

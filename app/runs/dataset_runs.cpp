@@ -12,8 +12,8 @@
 #include "app/output_folder.hpp"
 #include "app/runs/job_list.hpp"
 #include "app/runs/runs.hpp"
-#include "dem/durable_file.hpp"
-#include "model/error.hpp"
+#include "model/files/durable_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -119,11 +119,11 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
     for (const Json& warning : record.at("warnings")) test.warnings.push_back(warning);
     const std::string series = planned.branch_of_preparation ? to_string(planned.path.branch) : "series";
     const fs::path file = folder / (planned.name + ".csv");
-    dem::copy_durably(store.folder(test.run) / (series + ".csv"), file);
+    copy_durably(store.folder(test.run) / (series + ".csv"), file);
     test.record.rows = read_series(file, planned.path, test.record.packing);
     if (planned.probes) {
       const fs::path probes = make_subfolder(folder, kProbesFolder) / (planned.name + ".csv");
-      dem::copy_durably(store.folder(test.run) / "probes.csv", probes);
+      copy_durably(store.folder(test.run) / "probes.csv", probes);
       test.probes_sha256 = sha256_of_file(probes);
       stale_probes.erase(planned.name);
     }

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

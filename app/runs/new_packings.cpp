@@ -6,7 +6,7 @@
 
 #include "app/files/engine_path.hpp"
 #include "app/files/preparation_json.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 

@@ -8,10 +8,10 @@
 #include "app/digest.hpp"
 #include "app/files/probe_columns.hpp"
 #include "app/runs/run_store.hpp"
-#include "dem/durable_file.hpp"
-#include "dem/path_row.hpp"
-#include "dem/probe_rows.hpp"
-#include "model/error.hpp"
+#include "model/files/durable_file.hpp"
+#include "dem/element_tests/path_row.hpp"
+#include "dem/statics/probe_rows.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -101,7 +101,7 @@ void PathProbes::finish(const dem::State& end) {
   if (segments_.empty() && done_ == 0) probe(end, 0, 0);
   std::string text = probe_header() + "\n";
   for (const std::string& line : lines_) text += line + "\n";
-  dem::write_durably(folder_ / "probes.csv", text);
+  write_durably(folder_ / "probes.csv", text);
 }
 
 void PathProbes::save() const {

@@ -9,8 +9,8 @@
 #include "app/files/spec_file.hpp"
 #include "app/output_folder.hpp"
 #include "app/runs/run_store.hpp"
-#include "dem/state_file.hpp"
-#include "model/error.hpp"
+#include "dem/files/state_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "app/digest.hpp"
 #include "app/output_folder.hpp"
-#include "dem/engine_version.hpp"
-#include "model/error.hpp"
+#include "dem/engine/engine_version.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 

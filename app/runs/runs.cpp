@@ -10,8 +10,8 @@
 #include "app/runs/checkpoint_files.hpp"
 #include "app/runs/path_probes.hpp"
 #include "app/runs/preparation_folder.hpp"
-#include "dem/state_file.hpp"
-#include "model/error.hpp"
+#include "dem/files/state_file.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

@@ -11,9 +11,9 @@
 #include "app/files/probe_json.hpp"
 #include "app/runs/checkpoint_files.hpp"
 #include "app/runs/run_store.hpp"
-#include "dem/preparation.hpp"
-#include "model/run_control.hpp"
-#include "model/test_record.hpp"
+#include "dem/element_tests/preparation.hpp"
+#include "model/vocabulary/run_control.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app {
 

@@ -9,7 +9,7 @@
 #include "app/provenance.hpp"
 #include "app/study/law_quantities.hpp"
 #include "fit/calibrate.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 

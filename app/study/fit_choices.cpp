@@ -8,7 +8,7 @@
 #include <set>
 
 #include "app/study/settings_study.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

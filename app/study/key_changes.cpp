@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/one_line.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {

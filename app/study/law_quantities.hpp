@@ -1,5 +1,5 @@
 #pragma once
-// What a calibration says of the law, each with what every packing moved it by: psi_c of the parameters (fit/covariance.hpp)
+// What a calibration says of the law, each with what every packing moved it by: psi_c of the parameters (fit/statistics/covariance.hpp)
 // times the slope of the quantity. Costs no further fit, and is the error that bands are drawn of; where a fit is linear in
 // its parameters it is that of fits without each packing in turn.
 
@@ -8,7 +8,7 @@
 #include "app/study/study_quantity.hpp"
 #include "fit/calibrate.hpp"
 #include "model/law.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::app {
 

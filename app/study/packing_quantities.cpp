@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "app/files/spec_file.hpp"
-#include "fit/staged_laws.hpp"
+#include "fit/stages/staged_laws.hpp"
 
 namespace grainlaw::app {
 namespace {

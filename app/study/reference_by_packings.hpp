@@ -11,7 +11,7 @@
 #include "app/session.hpp"
 #include "app/study/settings_study.hpp"
 #include "fit/options.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::app {
 

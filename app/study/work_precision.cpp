@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::app {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "model/parameters.hpp"
-#include "model/run_control.hpp"
-#include "predict/walker.hpp"
+#include "model/vocabulary/run_control.hpp"
+#include "predict/studies/walker.hpp"
 
 namespace grainlaw::app {
 

@@ -1,20 +1,18 @@
 #!/usr/bin/env bash
 # check_includes.sh ROOT: fails when an include of a room breaks include_rules.txt or when an own
-# header is not included as "room/file.hpp". One line per violation: file:line: reason.
+# header is not included as "room/.../file.hpp". One line per violation: file:line: reason.
 set -euo pipefail
 
 root=${1:?usage: check_includes.sh ROOT}
 rules=$(dirname "${BASH_SOURCE[0]}")/include_rules.txt
 
-declare -A allowed=() private=() in_vocabulary=()
+declare -A allowed=() private=() rooms=()
 while IFS= read -r line; do
   line=${line%%#*}
-  key=${line%%: *} value=${line#*:}
-  key=${key%:}
+  key=${line%%:*} value=${line#*:}
   case $line in
-    room\ *) allowed[${key#room }]=" ${key#room } $value " ;;
-    vocabulary\ *) for name in $value; do in_vocabulary[$name]=1; done ;;
     private\ *) private[${key#private }]=${value// /} ;;
+    *:*) allowed[$key]=" $key $value " rooms[${key%%/*}]=1 ;;
   esac
 done <"$rules"
 
@@ -22,6 +20,18 @@ violations=0
 report() {
   printf '%s:%s: %s\n' "${1#"$root"/}" "$2" "$3"
   violations=$((violations + 1))
+}
+
+# The longest folder of the rules that the path begins with, in $folder; empty when there is none.
+folder_of() { # path
+  folder=${1%/*}
+  while [[ -z ${allowed[$folder]:-} ]]; do
+    if [[ $folder != */* ]]; then
+      folder=
+      return
+    fi
+    folder=${folder%/*}
+  done
 }
 
 # Is the header one that belongs to a single room? Then who includes it decides.
@@ -37,31 +47,23 @@ check_private() { # file room line header
   return 1
 }
 
-check_angled() { # file room line header
-  if [[ -f $root/$4 ]]; then
-    report "$1" "$3" "own header <$4>: write it in quotes"
+check_angled() { # file line header
+  if [[ -f $root/$3 ]]; then
+    report "$1" "$2" "own header <$3>: write it in quotes"
   fi
 }
 
-check_quoted() { # file room line header
-  local target=${4%%/*} stem
-  if [[ $4 != */* || -z ${allowed[$target]:-} ]]; then
+check_quoted() { # file folder line header
+  if [[ $4 != */* || $4 == ../* || -z ${rooms[${4%%/*}]:-} ]]; then
     report "$1" "$3" "\"$4\" is not of the form \"room/file.hpp\""
     return
   fi
   if [[ ! -f $root/$4 ]]; then
     report "$1" "$3" "\"$4\" does not exist"
   fi
-  if [[ ${allowed[$2]} != *" $target "* ]]; then
-    report "$1" "$3" "$2 must not include $target (\"$4\")"
-  elif [[ $target == model ]]; then
-    stem=${4#model/} stem=${stem%.hpp}
-    if [[ $2 == dem && -z ${in_vocabulary[$stem]:-} ]]; then
-      report "$1" "$3" "dem must not know the law: \"$4\" is not in the vocabulary"
-    fi
-    if [[ $2 == model && -n ${in_vocabulary[$(basename "${1%.*}")]:-} && -z ${in_vocabulary[$stem]:-} ]]; then
-      report "$1" "$3" "the vocabulary must not include \"$4\""
-    fi
+  folder_of "$4"
+  if [[ ${allowed[$2]} != *" $folder "* ]]; then
+    report "$1" "$3" "$2 must not include ${folder:-${4%/*}} (\"$4\")"
   fi
 }
 
@@ -71,18 +73,24 @@ while IFS= read -r -d '' file; do
   files=$((files + 1))
   path=${file#"$root"/}
   room=${path%%/*}
+  folder_of "$path"
+  home=$folder
+  if [[ -z $home ]]; then
+    report "$file" 1 "no line of include_rules.txt is for ${path%/*}"
+    continue
+  fi
   while IFS=: read -r number text; do
     if [[ ! $text =~ $include ]]; then
       report "$file" "$number" "cannot read this include"
     elif check_private "$file" "$room" "$number" "${BASH_REMATCH[2]:-${BASH_REMATCH[3]}}"; then
       continue
     elif [[ -n ${BASH_REMATCH[2]} ]]; then
-      check_angled "$file" "$room" "$number" "${BASH_REMATCH[2]}"
+      check_angled "$file" "$number" "${BASH_REMATCH[2]}"
     else
-      check_quoted "$file" "$room" "$number" "${BASH_REMATCH[3]}"
+      check_quoted "$file" "$home" "$number" "${BASH_REMATCH[3]}"
     fi
   done < <(grep -nE '^[[:space:]]*#[[:space:]]*include' "$file" || true)
-done < <(for room in "${!allowed[@]}"; do
+done < <(for room in "${!rooms[@]}"; do
   if [[ -d $root/$room ]]; then
     find "$root/$room" -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' \) -print0
   fi

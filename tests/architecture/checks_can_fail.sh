@@ -10,16 +10,20 @@ failures=0
 
 clean_tree() {
   rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{model,dem,fit,predict,app,tests/unit}
-  echo '#include <Eigen/Core>' >"$tree/model/tensor.hpp"
-  echo '#include "model/tensor.hpp"' >"$tree/model/path.hpp"
-  echo '#include "model/tensor.hpp"' >"$tree/model/law.hpp"
-  echo '#include "model/path.hpp"' >"$tree/dem/packing.hpp"
-  printf '#include "dem/packing.hpp"\n#include <vector>\n' >"$tree/dem/packing.cpp"
+  mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests,fit,predict,app,tests/unit}
+  echo '#include <Eigen/Core>' >"$tree/model/vocabulary/tensor.hpp"
+  echo '#include "model/vocabulary/tensor.hpp"' >"$tree/model/vocabulary/path.hpp"
+  echo '#include "model/vocabulary/path.hpp"' >"$tree/model/files/path_file.hpp"
+  echo '#include "model/files/path_file.hpp"' >"$tree/model/law.hpp"
+  printf '#include "model/vocabulary/path.hpp"\n#include "dem/engine/lanes/lanes.hpp"\n' >"$tree/dem/engine/packing.hpp"
+  echo '#include "dem/engine/packing.hpp"' >"$tree/dem/engine/lanes/lanes.hpp"
+  printf '#include "dem/engine/packing.hpp"\n#include <vector>\n' >"$tree/dem/engine/packing.cpp"
+  echo '#include "dem/engine/lanes/lanes.hpp"' >"$tree/dem/statics/relax.hpp"
+  echo '#include "dem/statics/relax.hpp"' >"$tree/dem/element_tests/drive.hpp"
   printf '#include "model/law.hpp"\n#include <ceres/ceres.h>\n' >"$tree/fit/calibrate.cpp"
   printf '#include "model/law.hpp"\n' >"$tree/fit/calibrate.hpp"
   printf '#include "model/law.hpp"\n#include <cvodes/cvodes.h>\n' >"$tree/predict/predict.cpp"
-  printf '#include "fit/calibrate.hpp"\n#include "dem/packing.hpp"\n#include <grainlaw_build_info.hpp>\n' \
+  printf '#include "fit/calibrate.hpp"\n#include "dem/engine/packing.hpp"\n#include <grainlaw_build_info.hpp>\n' \
     >"$tree/app/commands.cpp"
   seq 400 | sed 's|^|// |' >"$tree/tests/unit/tensor_test.cpp"
 }
@@ -51,23 +55,27 @@ for check in check_includes.sh check_files.sh; do
   fi
 done
 
-sow model/law.hpp '"dem/packing.hpp"' 'model must not include dem'
-sow dem/packing.hpp '"fit/calibrate.hpp"' 'dem must not include fit'
-sow dem/packing.cpp '"model/law.hpp"' 'dem must not know the law'
-sow model/path.hpp '"model/law.hpp"' 'the vocabulary must not include'
+sow model/law.hpp '"dem/engine/packing.hpp"' 'model must not include dem/engine'
+sow dem/engine/packing.hpp '"fit/calibrate.hpp"' 'dem/engine must not include fit'
+sow dem/engine/packing.cpp '"model/law.hpp"' 'dem/engine must not include model'
+sow dem/engine/packing.cpp '"dem/statics/relax.hpp"' 'dem/engine must not include dem/statics'
+sow dem/engine/lanes/lanes.hpp '"dem/element_tests/drive.hpp"' 'dem/engine must not include dem/element_tests'
+sow dem/statics/relax.hpp '"dem/element_tests/drive.hpp"' 'dem/statics must not include dem/element_tests'
+sow model/vocabulary/path.hpp '"model/law.hpp"' 'model/vocabulary must not include model'
+sow model/files/path_file.hpp '"model/law.hpp"' 'model/files must not include model'
 sow fit/calibrate.cpp '"predict/predict.hpp"' 'fit must not include predict'
 sow predict/predict.cpp '"fit/calibrate.hpp"' 'predict must not include fit'
-sow fit/calibrate.cpp '"dem/packing.hpp"' 'fit must not include dem'
+sow fit/calibrate.cpp '"dem/engine/packing.hpp"' 'fit must not include dem'
 sow fit/calibrate.hpp '"app/commands.hpp"' 'fit must not include app'
 sow fit/calibrate.hpp '<ceres/ceres.h>' 'belongs to fit/*.cpp only'
 sow predict/predict.cpp '<ceres/ceres.h>' 'belongs to fit/*.cpp only'
 sow app/commands.cpp '<cvodes/cvodes.h>' 'belongs to predict/*.cpp only'
 sow fit/calibrate.cpp '<nvector/nvector_serial.h>' 'belongs to predict/*.cpp only'
-sow dem/packing.cpp '"grainlaw_build_info.hpp"' 'belongs to app/*.cpp only'
-sow dem/packing.cpp 'MACRO' 'cannot read this include'
-sow dem/packing.cpp '"packing.hpp"' 'is not of the form'
-sow dem/packing.cpp '"../model/law.hpp"' 'is not of the form'
-sow dem/packing.cpp '<model/path.hpp>' 'write it in quotes'
+sow dem/engine/packing.cpp '"grainlaw_build_info.hpp"' 'belongs to app/*.cpp only'
+sow dem/engine/packing.cpp 'MACRO' 'cannot read this include'
+sow dem/engine/packing.cpp '"packing.hpp"' 'is not of the form'
+sow dem/engine/packing.cpp '"../model/law.hpp"' 'is not of the form'
+sow dem/engine/packing.cpp '<model/vocabulary/path.hpp>' 'write it in quotes'
 sow app/commands.cpp '"dem/no_such_file.hpp"' 'does not exist'
 sow app/commands.cpp '"tests/unit/tensor_test.cpp"' 'is not of the form'
 

@@ -7,11 +7,11 @@
 #include <numeric>
 #include <string>
 
-#include "dem/lane_list.hpp"
-#include "dem/lane_pass.hpp"
-#include "dem/lane_search.hpp"
-#include "dem/lane_state.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/lanes/lane_list.hpp"
+#include "dem/engine/lanes/lane_pass.hpp"
+#include "dem/engine/lanes/lane_search.hpp"
+#include "dem/engine/lanes/lane_state.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace {

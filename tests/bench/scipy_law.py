@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """scipy_law.py STUDY.json: Eq. (16) along the study's smooth path (UNI, nu = .695 to .82) by SciPy's solve_ivp, beside what
 `grainlaw study integrator` measured. Same equations, same parameters (the study's `values`), same unknowns P*, sigma'*, F'
-in the coordinates of model/tensor.hpp; the end of the path must agree with the study's reference. Prints for each method the
+in the coordinates of model/vocabulary/tensor.hpp; the end of the path must agree with the study's reference. Prints for each method the
 least time with an error of at most 1e-6 and its ratio to ours. Run pinned to one core on a quiet machine."""
 
 import json

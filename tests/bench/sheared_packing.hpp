@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <utility>
 
-#include "dem/averages.hpp"
-#include "dem/preparation.hpp"
-#include "dem/state_file.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/element_tests/preparation.hpp"
+#include "dem/files/state_file.hpp"
 
 namespace grainlaw::bench {
 

@@ -12,8 +12,8 @@
 
 #include <limits>
 
-#include "dem/averages.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/referee/lammps.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "dem/simulation.hpp"
+#include "dem/engine/simulation.hpp"
 
 namespace grainlaw::referee {
 

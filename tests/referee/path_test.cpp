@@ -22,8 +22,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "dem/averages.hpp"
-#include "dem/element_test.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/element_tests/element_test.hpp"
 #include "tests/referee/lammps.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "dem/energy_account.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/energy_account.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/support/dem_families.hpp"
 
 namespace grainlaw::dem::scene {

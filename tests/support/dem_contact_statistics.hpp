@@ -8,8 +8,8 @@
 
 #include <numbers>
 
-#include "dem/averages.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem::scene {

@@ -4,8 +4,8 @@
 #include <map>
 #include <tuple>
 
-#include "dem/neighbour_list.hpp"
-#include "dem/reference.hpp"
+#include "dem/engine/neighbour_list.hpp"
+#include "dem/engine/reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem::scene {

@@ -13,11 +13,11 @@
 #include <string_view>
 #include <vector>
 
-#include "dem/drive.hpp"
-#include "dem/energy_account.hpp"
-#include "dem/lane_list.hpp"
-#include "dem/simulation.hpp"
-#include "model/path.hpp"
+#include "dem/element_tests/drive.hpp"
+#include "dem/engine/energy_account.hpp"
+#include "dem/engine/lanes/lane_list.hpp"
+#include "dem/engine/simulation.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::dem::scene {
 

@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "fit/calibrate.hpp"
-#include "fit/density_fit.hpp"
+#include "fit/stages/density_fit.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/table.hpp"

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "fit/least_squares.hpp"
-#include "fit/residual_block.hpp"
+#include "fit/statistics/least_squares.hpp"
+#include "fit/statistics/residual_block.hpp"
 #include "tests/support/derivative_check.hpp"
 
 namespace grainlaw::testing {

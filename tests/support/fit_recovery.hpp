@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "fit/density_fit.hpp"
-#include "fit/evolution_fit.hpp"
+#include "fit/stages/density_fit.hpp"
+#include "fit/stages/evolution_fit.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::testing {

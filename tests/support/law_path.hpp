@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw::testing {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fit/stage_fit.hpp"
+#include "fit/stages/stage_fit.hpp"
 
 namespace grainlaw::testing {
 

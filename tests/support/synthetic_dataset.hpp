@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "model/law.hpp"
-#include "model/path.hpp"
-#include "model/test_record.hpp"
+#include "model/vocabulary/path.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::testing {
 

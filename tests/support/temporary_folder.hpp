@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::testing {
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "fit/calibrate.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 int main() {
   try {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "dem/preparation.hpp"
+#include "dem/element_tests/preparation.hpp"
 #include "predict/predict.hpp"
 
 using namespace grainlaw;

@@ -6,7 +6,7 @@
 
 #include "app/study/settings_study.hpp"
 #include "fit/data_set.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/study_dataset.hpp"
 
 namespace grainlaw::app {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "app/uncertainty.hpp"
-#include "fit/staged_laws.hpp"
+#include "fit/stages/staged_laws.hpp"
 #include "model/student.hpp"
 #include "predict/bands.hpp"
 

@@ -6,7 +6,7 @@
 #include "app/files/spec_file.hpp"
 #include "app/files/test_file.hpp"
 #include "app/runs/new_packings.hpp"
-#include "dem/state_file.hpp"
+#include "dem/files/state_file.hpp"
 
 #include "tests/support/temporary_folder.hpp"
 

@@ -9,7 +9,7 @@
 #include "app/files/csv_table.hpp"
 #include "app/runs/run_store.hpp"
 #include "app/runs/runs.hpp"
-#include "dem/state_file.hpp"
+#include "dem/files/state_file.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -15,7 +15,7 @@
 #include "app/output_folder.hpp"
 #include "app/report/dem_series.hpp"
 #include "app/report/report_input.hpp"
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/report_scene.hpp"
 #include "tests/support/well_formed.hpp"
 

@@ -10,7 +10,7 @@
 #include "app/runs/dataset_runs.hpp"
 #include "app/runs/new_packings.hpp"
 #include "app/runs/preparation_folder.hpp"
-#include "dem/state_file.hpp"
+#include "dem/files/state_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {

@@ -1,4 +1,4 @@
-#include "dem/averages.hpp"
+#include "dem/engine/averages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "dem/balance.hpp"
+#include "dem/statics/balance.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dem/contact_network.hpp"
-#include "dem/reference.hpp"
+#include "dem/statics/contact_network.hpp"
+#include "dem/engine/reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

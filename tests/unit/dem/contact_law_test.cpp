@@ -1,4 +1,4 @@
-#include "dem/contact_law.hpp"
+#include "dem/engine/contact_law.hpp"
 
 #include <gtest/gtest.h>
 

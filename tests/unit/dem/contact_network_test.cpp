@@ -1,12 +1,12 @@
-#include "dem/contact_network.hpp"
+#include "dem/statics/contact_network.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "dem/reference.hpp"
-#include "dem/relax.hpp"
-#include "model/error.hpp"
+#include "dem/engine/reference.hpp"
+#include "dem/statics/relax.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -1,4 +1,4 @@
-#include "dem/drive.hpp"
+#include "dem/element_tests/drive.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -1,4 +1,4 @@
-#include "dem/durable_file.hpp"
+#include "model/files/durable_file.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,11 +1,11 @@
-#include "dem/elastic_moduli.hpp"
+#include "dem/statics/elastic_moduli.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/error.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/error.hpp"
+#include "model/vocabulary/path.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -1,4 +1,4 @@
-#include "dem/element_test.hpp"
+#include "dem/element_tests/element_test.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,9 +8,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "dem/relax.hpp"
-#include "dem/state_file.hpp"
-#include "model/error.hpp"
+#include "dem/statics/relax.hpp"
+#include "dem/files/state_file.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

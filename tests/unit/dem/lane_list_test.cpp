@@ -1,5 +1,5 @@
 // Lists of lanes against brute force (hard case D19 for the vector engine), and a state's way through lanes and back.
-#include "dem/lane_list.hpp"
+#include "dem/engine/lanes/lane_list.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,11 +13,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "dem/lane_pass.hpp"
-#include "dem/lane_search.hpp"
-#include "dem/lane_state.hpp"
-#include "dem/neighbour_list.hpp"
-#include "dem/reference.hpp"
+#include "dem/engine/lanes/lane_pass.hpp"
+#include "dem/engine/lanes/lane_search.hpp"
+#include "dem/engine/lanes/lane_state.hpp"
+#include "dem/engine/neighbour_list.hpp"
+#include "dem/engine/reference.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/dem_state_bits.hpp"
 

@@ -1,5 +1,5 @@
 // Passes of the vector engine over one packing: both halves of a step at once, and rows that bypass the caches.
-#include "dem/lane_pass.hpp"
+#include "dem/engine/lanes/lane_pass.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "dem/lane_list.hpp"
-#include "dem/lane_search.hpp"
-#include "dem/lane_state.hpp"
+#include "dem/engine/lanes/lane_list.hpp"
+#include "dem/engine/lanes/lane_search.hpp"
+#include "dem/engine/lanes/lane_state.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

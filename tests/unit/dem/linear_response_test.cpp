@@ -1,11 +1,11 @@
-#include "dem/linear_response.hpp"
+#include "dem/statics/linear_response.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 
-#include "dem/reference.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/reference.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

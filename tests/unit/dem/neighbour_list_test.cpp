@@ -1,4 +1,4 @@
-#include "dem/neighbour_list.hpp"
+#include "dem/engine/neighbour_list.hpp"
 
 #include <gtest/gtest.h>
 

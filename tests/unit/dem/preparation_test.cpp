@@ -1,12 +1,12 @@
-#include "dem/preparation.hpp"
+#include "dem/element_tests/preparation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
-#include "dem/reference.hpp"
-#include "model/error.hpp"
+#include "dem/engine/reference.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

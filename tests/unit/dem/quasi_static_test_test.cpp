@@ -1,13 +1,13 @@
-#include "dem/quasi_static_test.hpp"
+#include "dem/element_tests/quasi_static_test.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "dem/preparation.hpp"
-#include "dem/reference.hpp"
-#include "model/error.hpp"
+#include "dem/element_tests/preparation.hpp"
+#include "dem/engine/reference.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/figure.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "dem/preparation.hpp"
-#include "dem/reference.hpp"
-#include "model/error.hpp"
+#include "dem/element_tests/preparation.hpp"
+#include "dem/engine/reference.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

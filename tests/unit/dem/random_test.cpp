@@ -1,4 +1,4 @@
-#include "dem/random.hpp"
+#include "dem/engine/random.hpp"
 
 #include <gtest/gtest.h>
 

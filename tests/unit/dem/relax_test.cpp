@@ -1,10 +1,10 @@
-#include "dem/relax.hpp"
+#include "dem/statics/relax.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dem/lane_pass.hpp"
-#include "dem/reference.hpp"
-#include "model/error.hpp"
+#include "dem/engine/lanes/lane_pass.hpp"
+#include "dem/engine/reference.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -1,11 +1,11 @@
-#include "dem/simulation.hpp"
+#include "dem/engine/simulation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <string>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -1,12 +1,12 @@
-#include "dem/sphere_table.hpp"
+#include "dem/files/sphere_table.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
 
-#include "dem/neighbour_list.hpp"
-#include "model/error.hpp"
+#include "dem/engine/neighbour_list.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -1,4 +1,4 @@
-#include "dem/state_file.hpp"
+#include "dem/files/state_file.hpp"
 
 #include <gtest/gtest.h>
 #include <openssl/evp.h>
@@ -12,8 +12,8 @@
 #include <functional>
 #include <limits>
 
-#include "dem/random.hpp"
-#include "model/error.hpp"
+#include "dem/engine/random.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
 namespace {

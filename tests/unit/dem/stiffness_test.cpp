@@ -1,9 +1,9 @@
-#include "dem/stiffness.hpp"
+#include "dem/statics/stiffness.hpp"
 
 #include <gtest/gtest.h>
 
-#include "dem/reference.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/reference.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

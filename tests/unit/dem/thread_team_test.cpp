@@ -1,4 +1,4 @@
-#include "dem/thread_team.hpp"
+#include "dem/engine/thread_team.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {

@@ -1,4 +1,4 @@
-#include "fit/covariance.hpp"
+#include "fit/statistics/covariance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fit/curvature.hpp"
+#include "fit/statistics/curvature.hpp"
 
 #include <gtest/gtest.h>
 

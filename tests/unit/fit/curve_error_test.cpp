@@ -1,10 +1,10 @@
-#include "fit/curve_error.hpp"
+#include "fit/statistics/curve_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "fit/staged_laws.hpp"
+#include "fit/stages/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {

@@ -1,4 +1,4 @@
-#include "fit/density_fit.hpp"
+#include "fit/stages/density_fit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fit/density_law_fit.hpp"
+#include "fit/stages/density_law_fit.hpp"
 
 #include <gtest/gtest.h>
 

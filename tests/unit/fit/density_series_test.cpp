@@ -1,10 +1,10 @@
-#include "fit/density_series.hpp"
+#include "fit/stages/density_series.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {

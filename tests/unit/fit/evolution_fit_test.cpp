@@ -1,4 +1,4 @@
-#include "fit/evolution_fit.hpp"
+#include "fit/stages/evolution_fit.hpp"
 
 #include <gtest/gtest.h>
 

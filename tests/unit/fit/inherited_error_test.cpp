@@ -1,4 +1,4 @@
-#include "fit/inherited_error.hpp"
+#include "fit/statistics/inherited_error.hpp"
 
 #include <gtest/gtest.h>
 

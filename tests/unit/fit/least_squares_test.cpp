@@ -1,10 +1,10 @@
-#include "fit/least_squares.hpp"
+#include "fit/statistics/least_squares.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "model/parameters.hpp"
 
 namespace grainlaw::fit {

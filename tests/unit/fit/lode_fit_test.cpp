@@ -1,4 +1,4 @@
-#include "fit/lode_fit.hpp"
+#include "fit/stages/lode_fit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fit/many_starts.hpp"
+#include "fit/statistics/many_starts.hpp"
 
 #include <gtest/gtest.h>
 

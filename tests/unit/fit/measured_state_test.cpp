@@ -1,4 +1,4 @@
-#include "fit/measured_state.hpp"
+#include "fit/stages/measured_state.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fit/memory_fit.hpp"
+#include "fit/stages/memory_fit.hpp"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "fit/outliers.hpp"
+#include "fit/statistics/outliers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fit/packing_scatter.hpp"
+#include "fit/statistics/packing_scatter.hpp"
 
 #include <gtest/gtest.h>
 

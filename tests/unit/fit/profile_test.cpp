@@ -1,10 +1,10 @@
-#include "fit/profile.hpp"
+#include "fit/statistics/profile.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "fit/covariance.hpp"
+#include "fit/statistics/covariance.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::fit {

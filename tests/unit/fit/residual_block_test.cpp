@@ -1,4 +1,4 @@
-#include "fit/residual_block.hpp"
+#include "fit/statistics/residual_block.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "fit/robust.hpp"
+#include "fit/statistics/robust.hpp"
 
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
-#include "fit/stage_fit.hpp"
+#include "fit/stages/stage_fit.hpp"
 
 namespace grainlaw::fit {
 namespace {

@@ -1,4 +1,4 @@
-#include "fit/shear_fit.hpp"
+#include "fit/stages/shear_fit.hpp"
 
 #include <gtest/gtest.h>
 

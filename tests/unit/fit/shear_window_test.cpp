@@ -1,4 +1,4 @@
-#include "fit/shear_window.hpp"
+#include "fit/stages/shear_window.hpp"
 
 #include <gtest/gtest.h>
 

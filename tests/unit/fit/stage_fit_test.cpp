@@ -1,11 +1,11 @@
-#include "fit/stage_fit.hpp"
+#include "fit/stages/stage_fit.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::fit {
 namespace {

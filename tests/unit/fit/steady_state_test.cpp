@@ -1,4 +1,4 @@
-#include "fit/steady_state.hpp"
+#include "fit/stages/steady_state.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "fit/trajectory.hpp"
+#include "fit/stages/trajectory.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "model/reduced_law.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 #include "tests/support/law_parameters.hpp"
 
 namespace grainlaw {

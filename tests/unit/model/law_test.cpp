@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/error.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/error.hpp"
+#include "model/vocabulary/path.hpp"
 #include "tests/support/law_parameters.hpp"
 
 namespace grainlaw {

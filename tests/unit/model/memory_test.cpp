@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/law.hpp"
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 namespace grainlaw {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {

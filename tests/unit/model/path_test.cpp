@@ -1,4 +1,4 @@
-#include "model/path.hpp"
+#include "model/vocabulary/path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {

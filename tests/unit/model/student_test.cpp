@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {

@@ -1,4 +1,4 @@
-#include "model/tensor.hpp"
+#include "model/vocabulary/tensor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "model/test_record.hpp"
+#include "model/vocabulary/test_record.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/law_path.hpp"
 

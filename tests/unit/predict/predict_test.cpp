@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 

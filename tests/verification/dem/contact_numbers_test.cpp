@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "dem/averages.hpp"
-#include "dem/element_test.hpp"
-#include "dem/reference.hpp"
-#include "model/error.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/element_tests/element_test.hpp"
+#include "dem/engine/reference.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_contact_statistics.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/figure.hpp"

@@ -8,10 +8,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "dem/element_test.hpp"
-#include "dem/reference.hpp"
-#include "dem/relax.hpp"
-#include "model/error.hpp"
+#include "dem/element_tests/element_test.hpp"
+#include "dem/engine/reference.hpp"
+#include "dem/statics/relax.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "dem/averages.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/dem_state_bits.hpp"
 

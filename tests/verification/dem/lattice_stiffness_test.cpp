@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/linear_response.hpp"
+#include "dem/statics/linear_response.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/figure.hpp"
 

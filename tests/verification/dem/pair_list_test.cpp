@@ -7,8 +7,8 @@
 #include <string>
 #include <variant>
 
-#include "dem/averages.hpp"
-#include "dem/lane_list.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/engine/lanes/lane_list.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/dem_pair_list.hpp"
 #include "tests/support/figure.hpp"

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "dem/averages.hpp"
-#include "dem/element_test.hpp"
-#include "dem/lane_pass.hpp"
-#include "dem/lane_state.hpp"
-#include "dem/reference.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/element_tests/element_test.hpp"
+#include "dem/engine/lanes/lane_pass.hpp"
+#include "dem/engine/lanes/lane_state.hpp"
+#include "dem/engine/reference.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/dem_state_bits.hpp"
 #include "tests/support/figure.hpp"

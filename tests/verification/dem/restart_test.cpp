@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "dem/preparation.hpp"
-#include "dem/state_file.hpp"
+#include "dem/element_tests/preparation.hpp"
+#include "dem/files/state_file.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/temporary_folder.hpp"

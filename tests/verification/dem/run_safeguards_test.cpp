@@ -11,8 +11,8 @@
 #include <numbers>
 #include <optional>
 
-#include "dem/element_test.hpp"
-#include "model/error.hpp"
+#include "dem/element_tests/element_test.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"
 

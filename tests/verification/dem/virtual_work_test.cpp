@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "dem/averages.hpp"
-#include "dem/reference.hpp"
-#include "dem/relax.hpp"
+#include "dem/engine/averages.hpp"
+#include "dem/engine/reference.hpp"
+#include "dem/statics/relax.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/figure.hpp"
 

@@ -10,8 +10,8 @@
 #include <random>
 
 #include "fit/calibrate.hpp"
-#include "fit/outliers.hpp"
-#include "model/error.hpp"
+#include "fit/statistics/outliers.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/fit_coverage.hpp"
 

@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "fit/density_fit.hpp"
-#include "fit/density_law_fit.hpp"
-#include "fit/evolution_fit.hpp"
-#include "fit/shear_fit.hpp"
+#include "fit/stages/density_fit.hpp"
+#include "fit/stages/density_law_fit.hpp"
+#include "fit/stages/evolution_fit.hpp"
+#include "fit/stages/shear_fit.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/fit_random_points.hpp"
 #include "tests/support/synthetic_dataset.hpp"

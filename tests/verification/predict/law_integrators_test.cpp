@@ -8,8 +8,8 @@
 #include <memory>
 #include <random>
 
-#include "model/error.hpp"
-#include "predict/batch.hpp"
+#include "model/vocabulary/error.hpp"
+#include "predict/studies/batch.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"

@@ -9,7 +9,7 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
-#include "predict/cvode.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"

@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-#include "predict/cvode.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "predict/segment_law.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_path.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/mixed_control.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"

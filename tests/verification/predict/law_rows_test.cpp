@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "model/error.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"

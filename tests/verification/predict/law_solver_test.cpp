@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "predict/cvode.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "tests/support/figure.hpp"
 
 namespace grainlaw::predict {

@@ -1,0 +1,71 @@
+#pragma once
+// Isotropic preparation, section 3.1 of the paper: random gas -> isotropic compression to nu_start -> relaxation ->
+// isotropic loading to nu_max -> isotropic unloading; states are kept at requested densities on both branches and
+// relaxed. A preparation is a function of its options.
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "dem/element_tests/element_test.hpp"
+#include "dem/statics/relax.hpp"
+
+namespace grainlaw::dem {
+
+struct PackingOptions {
+  std::int64_t particles = 2000;  ///< N
+  double size_width = 3;          ///< w = r_max/r_min of the uniform distribution, >= 1 [-]
+  double mean_radius = 1e-3;      ///< mean of the distribution [m]
+  std::uint64_t seed = 1;         ///< key of the generator
+  Material material;
+};
+
+struct PreparationOptions {
+  PackingOptions packing;
+  EngineOptions engine;
+  DriveOptions drive;
+  RelaxOptions relax;
+  double nu_gas = 0.3;            ///< volume fraction of the random gas [-]
+  double nu_start = 0.64;         ///< end of the gas compression [-]
+  double nu_max = 0.82;           ///< end of the loading branch [-]
+  double gas_compression_factor = 10;  ///< strain rate of the gas compression over drive.strain_rate [-]
+  std::vector<double> keep_loading;    ///< densities kept on the loading branch, within [nu_start, nu_max]
+  std::vector<double> keep_unloading;  ///< densities kept on the unloading branch, within [nu_start or nu_end, nu_max]
+  std::optional<double> nu_end;   ///< end of the unloading branch; default: lowest of keep_unloading, else nu_start [-]
+  int rows = 200;                 ///< rows of each branch's series (besides the first)
+};
+
+/// A state kept at a density, relaxed there.
+struct KeptState {
+  Branch branch = Branch::unloading;
+  double nu = 0;          ///< requested volume fraction; the state has it to rounding
+  State state;            ///< at rest, cell of exactly this density
+  Relaxation relaxation;  ///< `relaxed` false: flagged, near jamming
+};
+
+/// Receives results as they come, in order of time, so that the caller can save them.
+struct PreparationSink {
+  std::function<void(const KeptState&)> keep;                       ///< required
+  std::function<void(Branch, const std::vector<Observation>&)> series;  ///< whole series of a branch; required
+  std::function<void(const std::string&)> warn;  ///< energy or rate beyond their limits, with the stage; may be empty
+  /// Whether a continued preparation delivered this state before it was interrupted; it is not made again. May be empty.
+  std::function<bool(Branch, double nu)> has;
+};
+
+/// The random gas: radii uniform on 2<r>/(w+1) [1, w], random positions without overlap beyond what the relaxation
+/// removes, random velocities, zero momentum, volume fraction nu_gas, cubic cell. Throws InvalidInput naming the key.
+State random_gas(const PackingOptions& options, double nu_gas, const EngineOptions& engine, const RunControl& control);
+
+/// Runs the whole preparation. The branches are not interrupted by keeping: when one crosses a kept density, a copy is
+/// set to exactly that density and relaxed. Checkpoints are taken along its driven stages; a relaxation or the random gas
+/// that is interrupted is made again. Throws InvalidInput for options out of range, Interrupted on request.
+void prepare(const PreparationOptions& options, const PreparationSink& sink, const RunControl& control,
+             const Checkpointing& checkpointing = {});
+
+/// Goes on from a checkpoint of the same preparation; what the sink gets besides what it has already is the uninterrupted
+/// preparation's, bit for bit, and warnings of finished stages may come twice. Throws InvalidInput for a checkpoint that
+/// cannot be one of it.
+void continue_preparation(Checkpoint from, const PreparationOptions& options, const PreparationSink& sink,
+                          const RunControl& control, const Checkpointing& checkpointing = {});
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,40 @@
+#include "dem/engine/energy_account.hpp"
+
+#include <cmath>
+
+namespace grainlaw::dem {
+
+void account(Simulation& sim, const PassSums& sums) {
+  State& state = sim.state;
+  const double h = sim.dt / 2;
+  state.ledger.W_box += h * (state.sums.box_power + sums.box_power);
+  state.ledger.D_contact += h * (state.sums.contact_power + sums.contact_power);
+  state.ledger.D_background += h * (state.sums.drag_power + sums.drag_power);
+  state.sums = sums;
+}
+
+void open_ledger(Simulation& sim) {
+  const double E_kin = kinetic_energy(sim.state.packing);
+  sim.state.ledger = {};
+  sim.state.ledger.E_start = E_kin + sim.state.sums.E_pot;
+  sim.state.ledger.E_kin_start = E_kin;
+}
+
+double kinetic_energy(const Packing& p) {
+  double twice = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    twice += p.mass[i] * (p.vx[i] * p.vx[i] + p.vy[i] * p.vy[i] + p.vz[i] * p.vz[i]);
+  }
+  return twice / 2;
+}
+
+double energy_residual(const Simulation& sim) {
+  const Ledger& ledger = sim.state.ledger;
+  const double lost = ledger.D_contact + ledger.D_background;
+  const double scale = std::abs(ledger.W_box) + ledger.E_kin_start + lost;
+  if (scale == 0) return 0;
+  const double change = kinetic_energy(sim.state.packing) + sim.state.sums.E_pot - ledger.E_start;
+  return (ledger.W_box - change - lost) / scale;
+}
+
+}  // namespace grainlaw::dem

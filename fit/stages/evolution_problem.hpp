@@ -1,0 +1,26 @@
+#pragma once
+// What the fits of Eq. (16) make small, on all trajectories at once, row by row at the observed strains:
+//   P*  relative to the datum, on ISO unloading only. In shear P is shown but has no weight: Eq. (16) has no dilatancy
+//       (+33 % at nu = .68), and a fit of it would turn a2 (through A1) and p0 into something else.
+//   s   sigma'/P with the model's own P in the model and the measured one in the data, so that a wrong level of P cancels
+//   F   fabric
+// The deviators along the directions of the test's own segments (s_par, F_par; one component on co-axial paths): what
+// stands across them is the noise of a finite packing, and no parameter moves it.
+// Weights: shear_window.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
+
+#include "fit/statistics/least_squares.hpp"
+#include "fit/options.hpp"
+#include "fit/stages/trajectory.hpp"
+
+namespace grainlaw::fit {
+
+struct EvolutionProblem {
+  std::vector<FreeParameter> parameters;
+  std::vector<ResidualBlock> blocks;  ///< one per trajectory
+};
+
+/// Of the parameters `free`, at most 16 names of parameter_table(), from `start`; the others keep its values.
+EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
+                                   const std::vector<std::string>& free, const CalibrationOptions& options);
+
+}  // namespace grainlaw::fit

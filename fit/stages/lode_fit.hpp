@@ -1,0 +1,28 @@
+#pragma once
+// What the Lode angle of the shear changes of the limits s_max and F_max (evolution.hpp): psi_s and psi_F. The laws of Eq. (20)
+// are those of shear like D2; with everything else held, shear like D3 then shows what is different. Rows, quantities and
+// weights are those of the stage "evolution".
+
+#include "fit/stages/evolution_fit.hpp"
+
+namespace grainlaw::fit {
+
+/// l of D2 is 0, that of D3 1.
+bool is_like_D2(double lode);
+
+/// Shear at constant volume by its Lode angle.
+struct ByLodeAngle {
+  std::vector<Trajectory> others;     ///< unlike D2; none, where no shear at constant volume is like it
+  std::vector<Trajectory> reference;  ///< all the rest
+};
+ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories);
+
+/// "lode.stress_ratio", "lode.fabric".
+std::vector<std::string> lode_parameters();
+
+/// Stage "lode" on trajectories of another Lode angle; `law` takes the result. Without any both effects are fixed at zero.
+/// Errors contain those of `found` for the laws that are held.
+StageFit fit_lode(const std::vector<Trajectory>& others, LawParameters<double>& law, const CalibrationOptions& options,
+                  const RunControl& control, const FoundErrors& found = {});
+
+}  // namespace grainlaw::fit

@@ -1,0 +1,40 @@
+#pragma once
+// The error that a stage inherits from parameters of earlier stages that it takes as given, e.g. phi_c of Eq. (12) from nu_c
+// of Eq. (11): a little of nu_c is much of phi_c. A packing that moved the given parameters by psi_c moves those of the
+// stage by the response of its fit to the change of its gradient,
+//   psi_c += -A^+ d(J^T misfit)/d given psi_c(given),      A: covariance.hpp
+// and what both stages owe to the same packing adds up with its sign.
+// Source: two-step M-estimation, Newey & McFadden, Handbook of Econometrics IV (1994), section 6.
+
+#include <functional>
+
+#include "fit/stages/stage_fit.hpp"
+#include "model/parameters.hpp"
+
+namespace grainlaw::fit {
+
+/// Errors of the parameters found so far, in the order of parameter_table().
+struct FoundErrors {
+  Eigen::MatrixXd influence;           ///< kParameterCount x packings; zero where there is no error; empty: none at all
+  Eigen::VectorXd degrees_of_freedom;  ///< kParameterCount; NaN where there is no error
+
+  Eigen::MatrixXd covariance() const { return influence * influence.transpose(); }
+};
+FoundErrors no_errors();
+
+/// Adds columns of zeros for packings that did not take part, up to `packings` columns.
+void widen(Eigen::MatrixXd& influence, Eigen::Index packings);
+
+/// Adds to the errors of `second` what it owes to one given parameter. `slope`: of each row of its misfit, its Jacobian
+/// unchanged; `influence`: of the packings on the parameter. Degrees of freedom: the smaller of its own and
+/// `degrees_of_freedom`. Nothing changes where the given parameter has no error.
+void inherit_error(const Eigen::VectorXd& slope, const Eigen::RowVectorXd& influence, double degrees_of_freedom,
+                   StageFit& second);
+
+/// Likewise to all parameters of `groups`, their names up to the dot, and with the whole change of the gradient by difference
+/// quotients along each packing's influence. `blocks_at(law)`: the blocks of the stage with another law as given.
+void inherit_error(const std::vector<std::string>& groups, const FoundErrors& found, const LawParameters<double>& law,
+                   const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
+                   int threads, StageFit& second);
+
+}  // namespace grainlaw::fit

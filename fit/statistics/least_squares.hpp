@@ -1,0 +1,52 @@
+#pragma once
+// Bounded nonlinear least squares: min_x 1/2 sum_i (w_i (model_i(x) - data_i))^2, lower <= x <= upper, by Ceres's trust
+// region with dense QR. Blocks are evaluated by several threads, each into its own rows, and everything that is summed
+// is summed by one thread in a fixed order: the digits do not depend on the number of threads.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "fit/statistics/residual_block.hpp"
+#include "model/vocabulary/run_control.hpp"
+
+namespace grainlaw::fit {
+
+struct FreeParameter {
+  std::string name;             ///< of parameter_table()
+  double start = 0;             ///< moved into the bounds when outside
+  double lower = 0, upper = 0;  ///< both attainable
+  double scale = 1;             ///< typical magnitude > 0; the solver sees x/scale
+};
+
+/// The parameter `name` of the table with its bounds, starting from `start`.
+FreeParameter free_parameter(const std::string& name, double start);
+
+struct Solution {
+  Eigen::VectorXd x;
+  std::vector<bool> at_bound;  ///< per parameter
+  Eigen::VectorXd misfit;      ///< model - data of all rows of all blocks in order, unweighted
+  Eigen::VectorXd weight;      ///< of these rows
+  Eigen::VectorXd pull_slope;  ///< of these rows: d(w^2 misfit) over w^2 d misfit; 1, or 0 where Huber's loss holds the pull
+  Eigen::MatrixXd jacobian;    ///< d misfit/dx
+  Eigen::MatrixXd curvature;   ///< fit/statistics/curvature.hpp, set by fit_stage
+  std::vector<int> cluster;    ///< of these rows
+  double initial_cost = 0, final_cost = 0;
+  int iterations = 0;
+  std::string termination;  ///< Ceres's word and message
+  bool defined = false;     ///< misfit and jacobian are finite at x
+  bool converged = false;   ///< by Ceres's word and by the gradient, see .cpp
+  double seconds = 0;
+};
+
+/// How long is searched: rounds, between which parameters are taken out or let go at their bounds, of so many iterations.
+struct SolverEffort {
+  int rounds = 60, iterations = 8;
+};
+
+/// A problem that cannot be evaluated at its start, or is solved badly, returns with converged = false and says so in
+/// `termination`. Throws Interrupted.
+Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks, int threads,
+               const std::string& stage, const RunControl& control, const SolverEffort& effort = {});
+
+}  // namespace grainlaw::fit

@@ -1,0 +1,49 @@
+#pragma once
+// One element test: what was done to which packing, and the series that was seen. The unit of the data set.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "model/vocabulary/observation.hpp"
+#include "model/vocabulary/path.hpp"
+
+namespace grainlaw {
+
+/// What a test is for, fixed before it runs.
+enum class Role {
+  calibration,  ///< fitted
+  validation,   ///< never shown to a fit
+  description,  ///< fitted by laws of its own (Table 2's UNI and D3), which the calibrated law does not read
+};
+
+std::string to_string(Role role);
+/// Throws InvalidInput for a name that is none.
+Role role_from(const std::string& name);
+
+/// What a reader of a series must know about the packing it came from.
+struct PackingInfo {
+  std::uint64_t seed = 0;      ///< seed of the packing
+  std::int64_t particles = 0;  ///< number of spheres
+  double size_width = 0;       ///< w = r_max/r_min of the uniform distribution [-]
+  double mean_radius = 0;      ///< <r> of this packing [m]
+  double stiffness = 0;        ///< k [kg/s^2]
+
+  double stress_unit() const { return stiffness / (2 * mean_radius); }  ///< k/(2<r>) = stress of P* = 1 [Pa]
+};
+
+struct TestRecord {
+  std::string name;  ///< file name of the series without its extension; letters, digits, '.', '-', '_'
+  Role role = Role::calibration;
+  Path path;  ///< start and segments
+  PackingInfo packing;
+  std::vector<Observation> rows;  ///< first row: the start of the test; times increase
+};
+
+/// True when the test is one isotropic segment of the named sense (compression or decompression).
+bool is_isotropic_loading(const TestRecord& test);
+bool is_isotropic_unloading(const TestRecord& test);
+/// True when the test is a single segment of constant-volume shear (D2, D3 or such a tensor).
+bool is_pure_shear(const TestRecord& test);
+
+}  // namespace grainlaw

@@ -1,0 +1,47 @@
+#pragma once
+// One strain-controlled path by one of several integrators, without outputs on the way: what a user material needs, what
+// batches run, and what the study of work against precision compares. Set up once, walked many times.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/law.hpp"
+#include "model/vocabulary/path.hpp"
+
+namespace grainlaw::predict {
+
+/// adams, bdf: CVODE; erk_n: explicit Runge-Kutta of order n by ARKODE, both with error control in the unknowns of
+/// segment_law.hpp; dopri_5: the order 5 of these inlined (dormand_prince.hpp). euler: forward Euler in equal substeps, in P, sigma', F' themselves, as in common user materials.
+enum class Integrator { adams, bdf, erk_2, erk_3, erk_4, erk_5, erk_6, erk_8, dopri_5, euler };
+inline constexpr Integrator kIntegrators[] = {
+    Integrator::adams, Integrator::bdf,   Integrator::erk_2, Integrator::erk_3,   Integrator::erk_4,
+    Integrator::erk_5, Integrator::erk_6, Integrator::erk_8, Integrator::dopri_5, Integrator::euler};
+
+std::string to_string(Integrator integrator);
+
+struct Walk {
+  std::vector<LawState<double>> ends;  ///< state at the end of each segment
+  long rhs_evaluations = 0;            ///< of this path
+  long steps = 0;                      ///< of this path; attempts, where a step is repeated
+};
+
+class Walker {
+ public:
+  /// `accuracy`: relative tolerance in [1e-14, 1), the absolute one being 1e-4 of it; for euler the longest substep,
+  /// |strain| by the norm of its six components.
+  Walker(Integrator integrator, double accuracy, const LawParameters<double>& parameters, Rung rung, Coupling coupling);
+  ~Walker();
+  Walker(const Walker&) = delete;
+  Walker& operator=(const Walker&) = delete;
+
+  /// From `start`, jammed, to the end of `segments`. Throws NotConverged where the solver fails, InvalidInput for
+  /// Rung::memory on a segment that shears and spins: reversals on the way are events, which predict() follows.
+  Walk walk(const std::vector<StraightSegment>& segments, const LawState<double>& start);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace grainlaw::predict
