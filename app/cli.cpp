@@ -241,10 +241,13 @@ int perform(const Task& task, const Common& common, const std::string& command) 
   try {
     const InterruptGuard interrupt;
     ProgressPrinter progress(stderr, common.quiet);
-    Session session{command,       common.threads,
-                    common.json,   interrupt.token(),
-                    progress,      {},
-                    common.resume, common.checkpoint_interval};
+    Session session{{.threads = common.threads,
+                     .stop = interrupt.token(),
+                     .watch = progress,
+                     .resume = common.resume,
+                     .checkpoint_interval = common.checkpoint_interval,
+                     .command = command},
+                    common.json};
     return static_cast<int>(task(session));
   } catch (const InvalidInput& error) {
     return fail(ExitCode::invalid_input, error.what());

@@ -13,23 +13,15 @@
 
 namespace grainlaw::app {
 
-class ProgressPrinter {
+class ProgressPrinter : public Watch {
  public:
   ProgressPrinter(std::FILE* out, bool quiet);
 
-  /// Starts a new list: `work` is what each job is expected to do in `unit`, 0 for jobs that are done already. Without a
-  /// unit only the fraction that a job reports counts.
-  void begin(const std::vector<double>& work, std::string unit);
-
-  /// What the job with this index in the list is to report to.
-  RunControl control(std::size_t job, std::string name, std::stop_token stop);
-  void finished(std::size_t job);
-
-  /// Ends the list and clears the line.
-  void end();
-
-  /// A line of its own.
-  void log(const std::string& text);
+  void begin(const std::vector<double>& work, std::string unit) override;
+  RunControl control(std::size_t job, std::string name, std::stop_token stop) override;
+  void finished(std::size_t job) override;
+  void end() override;                         ///< clears the line, too
+  void log(const std::string& text) override;  ///< a line of its own
 
  private:
   struct Job {

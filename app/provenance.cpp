@@ -1,15 +1,14 @@
-#include "app/provenance.hpp"
+#include "app/execution.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <openssl/crypto.h>
 #include <sys/resource.h>
-#include <CLI/Version.hpp>
 #include <Eigen/Core>
 
 #include <ctime>
 
-#include "dem/engine/engine_version.hpp"
+#include "model/vocabulary/engine_version.hpp"
 #include "grainlaw_build_info.hpp"
 
 namespace grainlaw::app {
@@ -34,7 +33,7 @@ OrderedJson provenance(const std::string& command, int threads, const Stopwatch&
   OrderedJson object;
   object["grainlaw"] = std::string(build_info::version);
   object["git_revision"] = std::string(build_info::git_revision);
-  object["engine_version"] = dem::kEngineVersion;
+  object["engine_version"] = kEngineVersion;
   object["compiler"] = std::string(build_info::compiler);
   object["build_type"] = std::string(build_info::build_type);
   object["compile_flags"] = std::string(build_info::compile_flags);
@@ -45,7 +44,6 @@ OrderedJson provenance(const std::string& command, int threads, const Stopwatch&
       {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
       {"nlohmann_json",
        fmt::format("{}.{}.{}", NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
-      {"CLI11", CLI11_VERSION},
       {"OpenSSL", std::string(OpenSSL_version(OPENSSL_VERSION_STRING))}};
   object["command"] = command;
   object["threads"] = threads;
@@ -53,6 +51,10 @@ OrderedJson provenance(const std::string& command, int threads, const Stopwatch&
   object["seconds"] = stopwatch.seconds();
   object["peak_memory_MB"] = peak_memory_megabytes();
   return object;
+}
+
+OrderedJson provenance(const Execution& execution) {
+  return provenance(execution.command, execution.threads, execution.stopwatch);
 }
 
 }  // namespace grainlaw::app

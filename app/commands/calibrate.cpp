@@ -61,7 +61,7 @@ void log_warnings(const Dataset& dataset, Session& session) {
     ++tests;
   }
   if (tests > 0)
-    session.progress.log(fmt::format("warning: {} of {} tests have warnings (listed in dataset.json), e.g. {}", tests,
+    session.watch.log(fmt::format("warning: {} of {} tests have warnings (listed in dataset.json), e.g. {}", tests,
                                      dataset.tests.size(), first));
 }
 
@@ -102,29 +102,29 @@ std::vector<TestRecord> described_tests(const Dataset& dataset) {
 
 fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output,
                               Session& session) {
-  session.progress.begin({1}, "");
+  session.watch.begin({1}, "");
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
-  fit::Calibration calibration = fit::calibrate(tests, options, session.progress.control(0, "fit", session.stop));
+  fit::Calibration calibration = fit::calibrate(tests, options, session.watch.control(0, "fit", session.stop));
   if (options.profiles) {
     calibration.left_out =
-        fit::leave_one_out(tests, options, session.progress.control(0, "fit without one packing", session.stop));
+        fit::leave_one_out(tests, options, session.watch.control(0, "fit without one packing", session.stop));
   }
   ModeComparison modes;
   modes.descriptions = fit::describe(described_tests(dataset), calibration.parameters.isotropic.pressure.nu_c, options,
-                                     session.progress.control(0, "fit of the other modes", session.stop));
+                                     session.watch.control(0, "fit of the other modes", session.stop));
   modes.verdicts = verdicts_of(calibration, modes.descriptions, dataset.seeds.size());
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
   modes.claims = claims_of(shown, calibration, modes.descriptions, options.steady_from);
-  session.progress.end();
-  const OrderedJson origin = provenance(session.command, session.threads, session.stopwatch);
+  session.watch.end();
+  const OrderedJson origin = provenance(session);
   write_calibration(output / "calibration.json", calibration, options, modes, dataset.digest, origin);
   write_parameters(output / "parameters.json", {calibration, dataset.digest, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {
     if (!stage.converged)
-      session.progress.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
+      session.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
   }
-  for (const std::string& warning : calibration.warnings) session.progress.log("warning: " + warning);
+  for (const std::string& warning : calibration.warnings) session.watch.log("warning: " + warning);
   return calibration;
 }
 
@@ -153,8 +153,8 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   fit_options.loss = options.loss;
   fit_options.starts = options.starts;
   fit_options.profiles = options.checks;
-  fit_options.coupling = options.coupling.value_or(spec ? spec->coupling : Coupling::energy);
-  if (spec) spec->coupling = fit_options.coupling;
+  fit_options.coupling = options.coupling.value_or(spec ? coupling_of(spec->coupling) : Coupling::energy);
+  if (spec) spec->coupling = to_string(fit_options.coupling);
 
   const std::optional<PrecisionTarget> target =
       options.target_error ? std::optional(target_of(options, spec)) : std::nullopt;

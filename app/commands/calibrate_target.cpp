@@ -150,16 +150,16 @@ ExitCode calibrate_for(const PrecisionTarget& target, const Spec& spec, const Ca
     return scaled(entry->second, at, settings);
   };
   actions.seconds = [&] { return session.stopwatch.seconds(); };
-  actions.log = [&](const std::string& text) { session.progress.log(text); };
+  actions.log = [&](const std::string& text) { session.watch.log(text); };
   const TargetRun run = reach(target, pilot, plan_grid(pilot, spec.preparation.drive.strain_rate), actions);
 
   const Spec planned = planned_spec(spec, run.rounds.back().settings, target.path);
   if (rounds_of(planned).tests.size() < planned.tests.size()) {
-    session.progress.log("tests of other roles, of which the plan knew nothing");
+    session.watch.log("tests of other roles, of which the plan knew nothing");
     calibrate_with(planned, dataset, fit_seconds);
   }
   const OrderedJson document = plan_to_json(run, target, overrides(spec, planned),
-                                            provenance(session.command, session.threads, session.stopwatch));
+                                            provenance(session));
   write_json(options.output / "plan.json", document);
   print_result(session.json ? json_text(document) : table_of(run, target, planned, options.output));
   return run.outcome == TargetOutcome::met ? ExitCode::ok : ExitCode::not_converged;

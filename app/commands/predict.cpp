@@ -265,14 +265,14 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   if (content.dem) add_compared_curves(law, options, content);
   add_advice(law, content);
   content.bands = law_decides(path.path) ? "none: the law decides the strain" : text_of(law.uncertainty);
-  content.provenance = Json(provenance(session.command, session.threads, session.stopwatch));
+  content.provenance = Json(provenance(session));
   write_prediction(options.output, content);
 
   std::set<std::string> warned;
-  if (!calibration.converged) session.progress.log("warning: the calibration did not converge");
+  if (!calibration.converged) session.watch.log("warning: the calibration did not converge");
   for (const PredictedCurve& curve : content.curves) {
     for (const std::string& warning : curve.prediction.warnings) {
-      if (warned.insert(warning).second) session.progress.log("warning: " + warning);
+      if (warned.insert(warning).second) session.watch.log("warning: " + warning);
     }
   }
   print_result(session.json ? json_text(summary_of(content, options.output)) : text_of(content, options.output));

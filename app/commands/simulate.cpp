@@ -36,7 +36,7 @@ void run(const TestFile& test, const RunStore& store, Session& session) {
     const auto particles = static_cast<double>(test.preparation.packing.particles);
     const std::string name = fmt::format("preparation of seed {}", test.preparation.packing.seed);
     jobs.push_back({name, done ? 0 : particles * expected_steps(test.preparation), std::nullopt,
-                    [&, policy = session.policy(name)](int threads, const RunControl& control) {
+                    [&, policy = policy_of(session, name)](int threads, const RunControl& control) {
                       dem::PreparationOptions options = test.preparation;
                       options.engine.threads = threads;
                       ensure_preparation(store, options, policy, control);
@@ -49,13 +49,13 @@ void run(const TestFile& test, const RunStore& store, Session& session) {
     jobs.push_back({"element test",
                     done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
                     jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
-                    [&, policy = session.policy("element test")](int threads, const RunControl& control) {
+                    [&, policy = policy_of(session, "element test")](int threads, const RunControl& control) {
                       TestStart start = start_of(test);
                       start.preparation.engine.threads = threads;
                       ensure_test(store, start, test.path, policy, control);
                     }});
   }
-  run_jobs(jobs, session.threads, session.progress, session.stop);
+  run_jobs(jobs, session.threads, session.watch, session.stop);
 }
 
 /// What unloading.csv was observed on.
@@ -143,10 +143,10 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
   summary["cost"] = OrderedJson(record.at("cost"));
   summary["warnings"] = OrderedJson(record.at("warnings"));
   summary["files"] = files;
-  summary["provenance"] = provenance(session.command, session.threads, session.stopwatch);
+  summary["provenance"] = provenance(session);
   write_json(options.output / "simulation.json", summary);
 
-  for (const Json& warning : record.at("warnings")) session.progress.log("warning: " + warning.get<std::string>());
+  for (const Json& warning : record.at("warnings")) session.watch.log("warning: " + warning.get<std::string>());
   if (session.json) {
     print_result(json_text(summary));
     return ExitCode::ok;

@@ -38,7 +38,7 @@ FitChoice everything_in(const std::filesystem::path& folder, int threads) {
   choice.options.threads = threads;
   if (!choice.dataset.spec.is_null())
     choice.options.coupling =
-        spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling;
+        coupling_of(spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling);
   return choice;
 }
 
@@ -65,7 +65,7 @@ ExitCode study_fit(const StudyFitOptions& options, Session& session) {
   std::vector<SettingOutcome> outcomes;
   std::optional<ReferenceByPackings> reference;
   for (const FitSetting& setting : settings) {
-    session.progress.log("setting " + setting.name);
+    session.watch.log("setting " + setting.name);
     outcomes.push_back(calibrated_setting(setting.name, setting.changes, setting.choice.dataset, setting.choice.options,
                                           densities, path, session));
     SettingOutcome& outcome = outcomes.back();

@@ -190,7 +190,7 @@ ExitCode study_integrator(const StudyIntegratorOptions& options, Session& sessio
   make_output_folder(options.output);
   std::vector<WorkPrecision> studies;
   for (const StudyPath& path : study_paths(law.parameters)) {
-    session.progress.log("study of " + path.name);
+    session.watch.log("study of " + path.name);
     studies.push_back(
         measure_work(path, law.parameters, Rung::evolution, law.coupling, options.repeats, {{}, session.stop}));
   }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "app/files/csv_table.hpp"
+#include "app/files/column_csv.hpp"
 #include "app/files/series_columns.hpp"
 #include "app/one_line.hpp"
 #include "model/files/durable_file.hpp"
@@ -14,43 +14,6 @@
 
 namespace grainlaw::app {
 namespace {
-
-template <class Row>
-std::string table_text(const std::vector<Row>& rows, const std::vector<Column<Row>>& columns) {
-  std::string text;
-  for (std::size_t i = 0; i < columns.size(); ++i) text.append(i == 0 ? "" : ",").append(columns[i].title());
-  text += '\n';
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      text.append(i == 0 ? "" : ",").append(csv_number(columns[i].get(row)));
-    text += '\n';
-  }
-  return text;
-}
-
-/// Column of each title in the header. Refuses unknown titles and missing required ones.
-template <class Row>
-std::vector<const Column<Row>*> matched(const CsvReader& reader, const std::vector<Column<Row>>& columns) {
-  std::vector<const Column<Row>*> found;
-  for (const std::string& title : reader.header()) {
-    const std::string name = title.substr(0, title.find('['));
-    const auto column = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == name; });
-    if (column == columns.end()) {
-      reader.refuse("", fmt::format("unknown column '{}'; docs/formats.md lists the columns, remove the others",
-                                    one_line(title, 60)));
-    }
-    if (column->title() != title) {
-      reader.refuse("", fmt::format("column '{}' must be in its unit: '{}'", one_line(title, 60), column->title()));
-    }
-    found.push_back(&*column);
-  }
-  for (const auto& column : columns) {
-    if (column.required && std::find(found.begin(), found.end(), &column) == found.end()) {
-      reader.refuse("", fmt::format("misses the column '{}' ({})", column.title(), column.meaning));
-    }
-  }
-  return found;
-}
 
 constexpr double kConsistency =
     1e-3;  // relative; files of others may carry few digits, and a wrong unit or column is far off
@@ -161,31 +124,6 @@ void write_series(const std::filesystem::path& file, const std::vector<Observati
 
 std::vector<Observation> read_series(const std::filesystem::path& file, const Path& path, const PackingInfo& packing) {
   return SeriesReader(file, path, packing).read();
-}
-
-void write_prediction_series(const std::filesystem::path& file, const std::vector<predict::PredictedRow>& rows) {
-  write_durably(file, table_text(rows, prediction_columns()));
-}
-
-std::vector<predict::PredictedRow> read_prediction_series(const std::filesystem::path& file) {
-  CsvReader reader(file);
-  const auto columns = matched(reader, prediction_columns());
-  std::vector<predict::PredictedRow> rows;
-  std::vector<double> values;
-  while (reader.next(values)) {
-    predict::PredictedRow row;
-    row.state.sigma.setZero();
-    row.state.F.setZero();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (std::isnan(values[i]) && columns[i]->required && columns[i]->name != "s_dev" && columns[i]->name != "s_par" &&
-          columns[i]->name != "F_par") {
-        reader.refuse(columns[i]->title(), "is empty; this column needs a number in every row");
-      }
-      columns[i]->set(row, values[i]);
-    }
-    rows.push_back(row);
-  }
-  return rows;
 }
 
 }  // namespace grainlaw::app

@@ -186,7 +186,7 @@ Spec spec_from_json(const Json& document, const std::string& name) {
   if (document.contains("seeds")) spec.seeds = document["seeds"].get<std::vector<std::uint64_t>>();
   if (document.contains("densities")) spec.densities = sorted(document["densities"].get<std::vector<double>>());
   if (document.contains("keep")) spec.keep = sorted(document["keep"].get<std::vector<double>>());
-  if (document.value("coupling", "energy") == "single") spec.coupling = Coupling::single;
+  spec.coupling = document.value("coupling", "energy");
   if (document.contains("tests")) {
     for (std::size_t i = 0; i < document["tests"].size(); ++i) {
       spec.tests.push_back(test_from_json(document["tests"][i], spec.densities, name, fmt::format("tests[{}]", i)));
@@ -209,7 +209,7 @@ OrderedJson spec_to_json(const Spec& spec) {
   object["seeds"] = spec.seeds;
   object["densities"] = spec.densities;
   object["keep"] = spec.keep;
-  object["coupling"] = to_string(spec.coupling);
+  object["coupling"] = spec.coupling;
   OrderedJson& tests = object["tests"] = OrderedJson::array();
   for (const TestRequest& test : spec.tests) tests.push_back(test_to_json(test));
   return object;

@@ -11,7 +11,6 @@
 #include "app/files/json_document.hpp"
 #include "app/files/probe_json.hpp"
 #include "dem/element_tests/preparation.hpp"
-#include "model/parameters.hpp"
 #include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app {
@@ -34,7 +33,7 @@ struct Spec {
   std::vector<double> densities{0.68, 0.70, 0.72, 0.74, 0.77, 0.80};  ///< ascending [-]
   std::vector<double> keep;  ///< further densities of the unloading branch, for later predictions [-]
   std::vector<TestRequest> tests;
-  Coupling coupling = Coupling::energy;
+  std::string coupling = "energy";  ///< of the law that is fitted; the engine does not read it
 };
 
 /// Throws InvalidInput naming file, key, reason and remedy.

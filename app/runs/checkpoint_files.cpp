@@ -9,6 +9,11 @@ namespace grainlaw::app {
 
 namespace fs = std::filesystem;
 
+ResumePolicy policy_of(const Execution& execution, const std::string& run) {
+  return {execution.resume, execution.checkpoint_interval,
+          [&watch = execution.watch, run](const std::string& text) { watch.log(run + ": " + text); }};
+}
+
 CheckpointFiles::CheckpointFiles(fs::path folder, std::string key, const ResumePolicy& policy)
     : folder_(std::move(folder)), key_(std::move(key)), policy_(policy) {}
 

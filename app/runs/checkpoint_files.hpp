@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/execution.hpp"
 #include "dem/files/checkpoint.hpp"
 
 namespace grainlaw::app {
@@ -17,6 +18,9 @@ struct ResumePolicy {
   double checkpoint_interval = 60;              ///< wall time between two checkpoints [s]
   std::function<void(const std::string&)> log;  ///< told when a run goes on and what was damaged; may be empty
 };
+
+/// For the run with this name.
+ResumePolicy policy_of(const Execution& execution, const std::string& run);
 
 class CheckpointFiles {
  public:

@@ -31,7 +31,7 @@ std::string test_key(const PlannedTest& test) {
 double particles(const PlannedTest& test) { return static_cast<double>(test.preparation.packing.particles); }
 
 /// Preparations first, then the tests in order; each key once.
-std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore& store, const Session& session,
+std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,
                           RunCounts& counts) {
   std::vector<Job> jobs;
   std::map<std::string, std::size_t> index;
@@ -50,7 +50,7 @@ std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore&
     const auto& options = test.preparation;
     const std::string name = fmt::format("seed {}", options.packing.seed);
     add(key, {name, particles(test) * expected_steps(options), std::nullopt,
-              [&store, &options, policy = session.policy(name)](int threads, const RunControl& control) {
+              [&store, &options, policy = policy_of(execution, name)](int threads, const RunControl& control) {
                 dem::PreparationOptions with_threads = options;
                 with_threads.engine.threads = threads;
                 ensure_preparation(store, with_threads, policy, control);
@@ -61,7 +61,7 @@ std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore&
     if (index.contains(key)) continue;
     add(key, {test.name, particles(test) * expected_steps(test.preparation, resolve(test.path)),
               index.at(preparation_key(test)),
-              [&store, &test, policy = session.policy(test.name)](int threads, const RunControl& control) {
+              [&store, &test, policy = policy_of(execution, test.name)](int threads, const RunControl& control) {
                 TestStart start = start_of(test);
                 start.preparation.engine.threads = threads;
                 ensure_test(store, start, test.path, policy, control);
@@ -104,8 +104,8 @@ std::vector<PlannedTest> plan(const Spec& spec) {
 }
 
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
-                    const RunStore& store, Session& session, RunCounts& counts) {
-  run_jobs(jobs_for(tests, store, session, counts), session.threads, session.progress, session.stop);
+                    const RunStore& store, const Execution& execution, RunCounts& counts) {
+  run_jobs(jobs_for(tests, store, execution, counts), execution.threads, execution.watch, execution.stop);
 
   std::set<std::string> stale = series_listed(folder), stale_probes = stale;
   Dataset dataset;
@@ -133,7 +133,7 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
       dataset.seeds.push_back(seed);
     dataset.tests.push_back(std::move(test));
   }
-  dataset.provenance = Json(provenance(session.command, session.threads, session.stopwatch));
+  dataset.provenance = Json(provenance(execution));
   write_dataset_index(folder, dataset);
   for (const std::string& name : stale) {
     if (is_safe_name(name)) fs::remove(folder / (name + ".csv"));

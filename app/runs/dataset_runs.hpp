@@ -8,7 +8,7 @@
 #include "app/files/dataset.hpp"
 #include "app/files/spec_file.hpp"
 #include "app/runs/run_store.hpp"
-#include "app/session.hpp"
+#include "app/execution.hpp"
 
 namespace grainlaw::app {
 
@@ -35,6 +35,6 @@ struct RunCounts {
 /// Runs what is not in the store yet, copies the series to `folder` and writes dataset.json there last; series that an
 /// earlier dataset.json listed and this one does not are removed. Returns what read_dataset would read there.
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const std::filesystem::path& folder,
-                    const RunStore& store, Session& session, RunCounts& counts);
+                    const RunStore& store, const Execution& execution, RunCounts& counts);
 
 }  // namespace grainlaw::app

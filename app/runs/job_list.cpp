@@ -16,9 +16,9 @@ enum class Phase { waiting, running, done };
 
 class Schedule {
  public:
-  Schedule(const std::vector<Job>& jobs, int threads, ProgressPrinter& progress, const std::stop_token& stop)
+  Schedule(const std::vector<Job>& jobs, int threads, Watch& watch, const std::stop_token& stop)
       : jobs_(jobs),
-        progress_(progress),
+        watch_(watch),
         phase_(jobs.size(), Phase::waiting),
         errors_(jobs.size()),
         free_(threads),
@@ -69,8 +69,8 @@ class Schedule {
   void work(std::size_t i, int threads) {
     std::exception_ptr error;
     try {
-      jobs_[i].run(threads, progress_.control(i, jobs_[i].name, all_.get_token()));
-      progress_.finished(i);
+      jobs_[i].run(threads, watch_.control(i, jobs_[i].name, all_.get_token()));
+      watch_.finished(i);
     } catch (...) {
       error = std::current_exception();
       all_.request_stop();
@@ -93,7 +93,7 @@ class Schedule {
   }
 
   const std::vector<Job>& jobs_;
-  ProgressPrinter& progress_;
+  Watch& watch_;
   std::vector<Phase> phase_;
   std::vector<std::exception_ptr> errors_;
   int free_, running_ = 0;
@@ -106,17 +106,17 @@ class Schedule {
 
 }  // namespace
 
-void run_jobs(const std::vector<Job>& jobs, int threads, ProgressPrinter& progress, const std::stop_token& stop) {
+void run_jobs(const std::vector<Job>& jobs, int threads, Watch& watch, const std::stop_token& stop) {
   std::vector<double> work;
   for (const Job& job : jobs) work.push_back(job.work);
-  progress.begin(work, "particle-steps");
+  watch.begin(work, "particle-steps");
   try {
-    Schedule(jobs, threads, progress, stop).run();
+    Schedule(jobs, threads, watch, stop).run();
   } catch (...) {
-    progress.end();
+    watch.end();
     throw;
   }
-  progress.end();
+  watch.end();
 }
 
 }  // namespace grainlaw::app

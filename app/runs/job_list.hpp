@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/progress_printer.hpp"
+#include "app/watch_printer.hpp"
 
 namespace grainlaw::app {
 
@@ -22,6 +22,6 @@ struct Job {
 
 /// Runs all jobs on `threads` threads. When one throws, the others are stopped and the first error in the order of the
 /// list is rethrown; when `stop` is requested, Interrupted is thrown after all have stopped.
-void run_jobs(const std::vector<Job>& jobs, int threads, ProgressPrinter& progress, const std::stop_token& stop);
+void run_jobs(const std::vector<Job>& jobs, int threads, Watch& watch, const std::stop_token& stop);
 
 }  // namespace grainlaw::app

@@ -12,7 +12,7 @@
 
 #include "app/digest.hpp"
 #include "app/output_folder.hpp"
-#include "dem/engine/engine_version.hpp"
+#include "model/vocabulary/engine_version.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -38,7 +38,7 @@ void remove_scratch(const fs::path& run) {
 }  // namespace
 
 std::string run_key(const Json& request) {
-  return sha256(Json{{"engine_version", dem::kEngineVersion}, {"request", request}}.dump());
+  return sha256(Json{{"engine_version", kEngineVersion}, {"request", request}}.dump());
 }
 
 RunStore::RunStore(const fs::path& parent, const std::string& name) : root_(make_subfolder(parent, name)) {

@@ -31,12 +31,12 @@ Path study_path(const std::filesystem::path& file) {
 
 SettingOutcome calibrated_setting(const std::string& name, const Changes& changes, const Dataset& dataset,
                                   const fit::CalibrationOptions& options, const std::vector<double>& densities,
-                                  const std::optional<Path>& path, Session& session) {
+                                  const std::optional<Path>& path, const Execution& execution) {
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
   SettingOutcome outcome{name, changes, cost_of(dataset), packings_of(dataset), {}, {}, energy_residual_of(dataset),
                          "",   ""};
-  session.progress.begin({1}, "");
-  const RunControl control = session.progress.control(0, "fit of " + name, session.stop);
+  execution.watch.begin({1}, "");
+  const RunControl control = execution.watch.control(0, "fit of " + name, execution.stop);
   const Stopwatch stopwatch;
   try {
     const fit::Calibration calibration = fit::calibrate(tests, options, control);
@@ -56,7 +56,7 @@ SettingOutcome calibrated_setting(const std::string& name, const Changes& change
   } catch (const NotConverged& error) {
     outcome.note = error.what();
   }
-  session.progress.end();
+  execution.watch.end();
   return outcome;
 }
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "app/session.hpp"
+#include "app/execution.hpp"
 #include "app/study/settings_study.hpp"
 #include "fit/options.hpp"
 #include "model/vocabulary/path.hpp"
@@ -21,6 +21,6 @@ Path study_path(const std::filesystem::path& file);
 /// What the data cannot carry is missing, and the note says why.
 SettingOutcome calibrated_setting(const std::string& name, const Changes& changes, const Dataset& dataset,
                                   const fit::CalibrationOptions& options, const std::vector<double>& densities,
-                                  const std::optional<Path>& path, Session& session);
+                                  const std::optional<Path>& path, const Execution& execution);
 
 }  // namespace grainlaw::app

@@ -32,7 +32,7 @@ ReferenceByPackings::ReferenceByPackings(Dataset reference, SettingOutcome whole
       densities_(std::move(densities)),
       path_(std::move(path)) {}
 
-std::vector<StudyQuantity> ReferenceByPackings::quantities(const Dataset& dataset, Session& session) {
+std::vector<StudyQuantity> ReferenceByPackings::quantities(const Dataset& dataset, const Execution& execution) {
   const std::vector<std::uint64_t> seeds = packings_of(dataset);
   if (seeds == whole_.seeds) return {};
   for (const DatasetTest& test : dataset.tests) {
@@ -44,7 +44,7 @@ std::vector<StudyQuantity> ReferenceByPackings::quantities(const Dataset& datase
       return !std::binary_search(seeds.begin(), seeds.end(), test.record.packing.seed);
     });
     const std::string name = fmt::format("{} by packings {}", whole_.name, fmt::join(seeds, ", "));
-    found_.emplace(seeds, calibrated_setting(name, {}, part, options_, densities_, path_, session));
+    found_.emplace(seeds, calibrated_setting(name, {}, part, options_, densities_, path_, execution));
   }
   const SettingOutcome& found = found_.at(seeds);
   return found.model == whole_.model ? found.quantities : std::vector<StudyQuantity>{};

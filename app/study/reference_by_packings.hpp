@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/files/dataset.hpp"
-#include "app/session.hpp"
+#include "app/execution.hpp"
 #include "app/study/settings_study.hpp"
 #include "fit/options.hpp"
 #include "model/vocabulary/path.hpp"
@@ -23,7 +23,7 @@ class ReferenceByPackings {
 
   /// What the reference's tests of the packings of `dataset` show. Empty, so that the whole reference is compared with, if it has
   /// no others, does not have all of these (same seed, number, sizes and stiffness), or predicts by a richer model than they allow.
-  std::vector<StudyQuantity> quantities(const Dataset& dataset, Session& session);
+  std::vector<StudyQuantity> quantities(const Dataset& dataset, const Execution& execution);
 
  private:
   Dataset reference_;

@@ -48,17 +48,17 @@ std::vector<SpecSetting> settings_of(const std::filesystem::path& spec, const st
   return settings;
 }
 
-Dataset run_setting(const SpecSetting& setting, const std::filesystem::path& output, Session& session) {
-  session.progress.log("setting " + setting.name);
+Dataset run_setting(const SpecSetting& setting, const std::filesystem::path& output, const Execution& execution) {
+  execution.watch.log("setting " + setting.name);
   std::vector<PlannedTest> tests = plan(setting.spec);
   std::erase_if(tests, [](const PlannedTest& test) { return test.role != Role::calibration; });
   RunCounts counts;
   return run_planned(tests, Json(spec_to_json(setting.spec)),
-                     make_subfolder(make_subfolder(output, "data"), setting.folder), RunStore(output, "runs"), session,
+                     make_subfolder(make_subfolder(output, "data"), setting.folder), RunStore(output, "runs"), execution,
                      counts);
 }
 
-std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged, Session& session,
+std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged, const Execution& execution,
                                         const std::function<SettingOutcome(const SpecSetting&)>& show) {
   std::vector<SettingOutcome> outcomes;
   for (const SpecSetting& setting : settings) {
@@ -68,7 +68,7 @@ std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings
       throw;
     } catch (const Error& error) {
       if (outcomes.size() <= judged) throw;
-      session.progress.log(fmt::format("{} fails: {}", setting.name, one_line(error.what(), 300)));
+      execution.watch.log(fmt::format("{} fails: {}", setting.name, one_line(error.what(), 300)));
       outcomes.push_back({setting.name, setting.changes, {}, setting.spec.seeds, {}, {}, 0, "", error.what()});
     }
   }

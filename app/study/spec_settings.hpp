@@ -8,7 +8,7 @@
 
 #include "app/files/dataset.hpp"
 #include "app/files/spec_file.hpp"
-#include "app/session.hpp"
+#include "app/execution.hpp"
 #include "app/study/key_changes.hpp"
 #include "app/study/settings_study.hpp"
 
@@ -30,11 +30,11 @@ std::vector<SpecSetting> settings_of(const std::filesystem::path& spec, const st
                                      const std::vector<std::string>& vary);
 
 /// Runs the setting's calibration tests; data sets go to `output`/data, runs to `output`/runs, where they are found again.
-Dataset run_setting(const SpecSetting& setting, const std::filesystem::path& output, Session& session);
+Dataset run_setting(const SpecSetting& setting, const std::filesystem::path& output, const Execution& execution);
 
 /// What each setting has shown, by `show`. One after `judged` that fails, as a time step does that the engine refuses to go on
 /// with, shows nothing but its note; the study goes on.
-std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged, Session& session,
+std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged, const Execution& execution,
                                         const std::function<SettingOutcome(const SpecSetting&)>& show);
 
 }  // namespace grainlaw::app

@@ -10,11 +10,11 @@ OrderedJson study_document(const std::string& kind) {
 }
 
 void finish_study(const std::filesystem::path& folder, OrderedJson document, const std::string& figure_file,
-                  const report::Figure& figure, const std::string& text, const Session& session) {
-  document["provenance"] = provenance(session.command, session.threads, session.stopwatch);
+                  const report::Figure& figure, const std::string& text, const Execution& execution) {
+  document["provenance"] = provenance(execution);
   write_json(folder / "study.json", document);
   report::write_svg(folder / figure_file, figure);
-  print_result(session.json ? json_text(document) : text + (folder / "study.json").string() + "\n");
+  print_result(execution.json ? json_text(document) : text + (folder / "study.json").string() + "\n");
 }
 
 }  // namespace grainlaw::app

@@ -6,7 +6,7 @@
 
 #include "app/files/json_document.hpp"
 #include "app/report/figure.hpp"
-#include "app/session.hpp"
+#include "app/execution.hpp"
 
 namespace grainlaw::app {
 
@@ -15,6 +15,6 @@ OrderedJson study_document(const std::string& kind);
 
 /// Adds the provenance to `document`; prints it with --json, else `text` and the file's name.
 void finish_study(const std::filesystem::path& folder, OrderedJson document, const std::string& figure_file,
-                  const report::Figure& figure, const std::string& text, const Session& session);
+                  const report::Figure& figure, const std::string& text, const Execution& execution);
 
 }  // namespace grainlaw::app

@@ -7,6 +7,7 @@
 #include "app/exit_code.hpp"
 #include "app/files/probe_columns.hpp"
 #include "app/files/schema.hpp"
+#include "app/files/prediction_series.hpp"
 #include "app/files/series_columns.hpp"
 #include "app/files/spec_file.hpp"
 #include "tests/support/temporary_folder.hpp"

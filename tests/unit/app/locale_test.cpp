@@ -5,6 +5,7 @@
 
 #include "app/files/dataset.hpp"
 #include "app/files/parameters_file.hpp"
+#include "app/files/prediction_series.hpp"
 #include "app/files/series_columns.hpp"
 #include "app/files/series_csv.hpp"
 #include "tests/support/figure.hpp"

@@ -1,3 +1,4 @@
+#include "app/files/prediction_series.hpp"
 #include "app/files/series_csv.hpp"
 
 #include <cmath>
