@@ -7,10 +7,10 @@
 #include <iterator>
 
 #include "app/commands/calibrate_target.hpp"
-#include "app/files/calibration_file.hpp"
-#include "app/published/verdicts.hpp"
+#include "fit/calibration_file.hpp"
+#include "fit/published/verdicts.hpp"
 #include "app/report/report.hpp"
-#include "chain/parameters_file.hpp"
+#include "model/parameters_file.hpp"
 #include "dem/runs/dataset_runs.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "fit/calibrate.hpp"

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "chain/parameters_file.hpp"
+#include "model/parameters_file.hpp"
 #include "dem/runs/new_packings.hpp"
 #include "model/files/adopted_dataset.hpp"
 #include "model/files/digest.hpp"

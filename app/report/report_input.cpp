@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "app/files/calibration_file.hpp"
-#include "chain/parameters_file.hpp"
+#include "fit/calibration_file.hpp"
+#include "model/parameters_file.hpp"
 #include "model/files/digest.hpp"
 #include "model/vocabulary/error.hpp"
 

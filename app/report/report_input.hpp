@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/published/verdicts.hpp"
+#include "fit/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
 #include "model/vocabulary/test_record.hpp"
 #include "predict/prediction_files.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "chain/parameters_file.hpp"
+#include "model/parameters_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/series_columns.hpp"
 #include "model/files/series_csv.hpp"

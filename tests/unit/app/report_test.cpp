@@ -8,10 +8,10 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/files/calibration_file.hpp"
+#include "fit/calibration_file.hpp"
 #include "app/report/dem_series.hpp"
 #include "app/report/report_input.hpp"
-#include "chain/parameters_file.hpp"
+#include "model/parameters_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output_folder.hpp"
 #include "model/files/series_csv.hpp"

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <utility>
 
-#include "app/files/calibration_file.hpp"
-#include "chain/parameters_file.hpp"
+#include "fit/calibration_file.hpp"
+#include "model/parameters_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/series_csv.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/published/paper_claims.hpp"
+#include "fit/published/paper_claims.hpp"
 #include "fit/describe.hpp"
 
 namespace grainlaw::app {

@@ -1,11 +1,11 @@
-#include "chain/parameters_file.hpp"
+#include "model/parameters_file.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <vector>
 
-#include "chain/estimate_json.hpp"
+#include "model/estimate_json.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"

@@ -2,7 +2,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "chain/parameters_file.hpp"
+#include "model/parameters_file.hpp"
 #include "model/files/json_document.hpp"
 #include "tests/support/temporary_folder.hpp"
 

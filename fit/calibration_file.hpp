@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "app/published/verdicts.hpp"
+#include "fit/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
 #include "model/files/json_document.hpp"
 

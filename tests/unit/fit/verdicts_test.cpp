@@ -1,4 +1,4 @@
-#include "app/published/verdicts.hpp"
+#include "fit/published/verdicts.hpp"
 
 #include <gtest/gtest.h>
 

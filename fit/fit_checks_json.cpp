@@ -1,4 +1,4 @@
-#include "app/files/fit_checks_json.hpp"
+#include "fit/fit_checks_json.hpp"
 
 #include <cmath>
 

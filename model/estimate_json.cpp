@@ -1,4 +1,4 @@
-#include "chain/estimate_json.hpp"
+#include "model/estimate_json.hpp"
 
 #include <fmt/format.h>
 

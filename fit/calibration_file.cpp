@@ -1,12 +1,12 @@
-#include "app/files/calibration_file.hpp"
+#include "fit/calibration_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/files/fit_checks_json.hpp"
-#include "chain/estimate_json.hpp"
+#include "fit/fit_checks_json.hpp"
+#include "model/estimate_json.hpp"
 #include "fit/statistics/curve_error.hpp"
 #include "model/density_curves.hpp"
 #include "model/files/one_line.hpp"

@@ -1,4 +1,4 @@
-#include "app/published/paper_claims.hpp"
+#include "fit/published/paper_claims.hpp"
 
 #include <gtest/gtest.h>
 
