@@ -57,6 +57,25 @@ double bottom_of(const std::vector<const chain::SettingResult*>& results) {
   return std::pow(10.0, std::ceil(std::log10(least)) - 1);
 }
 
+Series work_series(const predict::WorkPrecision& study, predict::Integrator integrator, bool time) {
+  constexpr Marker markers[] = {Marker::circle,  Marker::square, Marker::triangle,
+                                Marker::diamond, Marker::cross,  Marker::plus};
+  const int i = static_cast<int>(integrator);
+  Series series;
+  series.label = plain(predict::to_string(integrator));
+  series.colour = static_cast<Colour>(i % kColourCount);
+  series.marker = markers[static_cast<std::size_t>(i) % std::size(markers)];
+  series.open_marker = i >= kColourCount;
+  series.line = i < 2 ? Line::solid : integrator == predict::Integrator::euler ? Line::dotted : Line::dashed;
+  series.line_width = 1.2;
+  for (const predict::WorkPoint& point : study.points) {
+    if (point.integrator != integrator) continue;
+    series.x.push_back(point.error);
+    series.y.push_back(time ? point.microseconds : static_cast<double>(point.rhs_evaluations));
+  }
+  return series;
+}
+
 }  // namespace
 
 Figure figure_of(const chain::SettingsStudy& study) {
@@ -94,6 +113,29 @@ Figure figure_of(const chain::SettingsStudy& study) {
   if (star.colour != Colour::grey) star.colour = Colour::vermillion;
   panel.series.push_back(star);
   figure.panels.push_back(panel);
+  return figure;
+}
+
+Figure figure_of(const predict::IntegratorStudy& study) {
+  Figure figure;
+  figure.id = "work-precision";
+  figure.title = "Work against precision of the integrators";
+  figure.description = "Right-hand sides and time of one path over the error reached, for each integrator";
+  figure.columns = static_cast<int>(study.panels.size());
+  figure.panel_height = 260;
+  for (const bool time : {false, true}) {
+    for (const predict::WorkPrecision& work : study.panels) {
+      Panel panel;
+      panel.title = plain(work.path.name);
+      panel.x.label = plain("error [–]");
+      panel.y.label = plain(time ? "time of a path [µs]" : "right-hand sides");
+      panel.x.logarithmic = panel.y.logarithmic = true;
+      panel.x.floor = 1e-13;
+      for (const predict::Integrator integrator : predict::kIntegrators)
+        panel.series.push_back(work_series(work, integrator, time));
+      figure.panels.push_back(panel);
+    }
+  }
   return figure;
 }
 

@@ -43,12 +43,8 @@ OrderedJson result_to_json(const SettingResult& r) {
 
 }  // namespace
 
-OrderedJson study_document(const std::string& kind) {
-  return {{"format", "grainlaw study"}, {"format_version", 1}, {"study", kind}};
-}
-
 OrderedJson study_to_json(const SettingsStudy& study) {
-  OrderedJson document = study_document(study.kind);
+  OrderedJson document = {{"format", "grainlaw study"}, {"format_version", 1}, {"study", study.kind}};
   document["base"] = study.base;
   document["error"] = study.error;
   document["reference"] = study.results.front().outcome.name;

@@ -6,9 +6,7 @@
 
 namespace grainlaw::chain {
 
-/// What study.json begins with.
-OrderedJson study_document(const std::string& kind);
-
+/// study.json without its provenance.
 OrderedJson study_to_json(const SettingsStudy& study);
 
 }  // namespace grainlaw::chain

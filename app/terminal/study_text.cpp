@@ -1,4 +1,4 @@
-#include "app/commands/study_table.hpp"
+#include "app/terminal/study_text.hpp"
 
 #include <fmt/format.h>
 
@@ -47,7 +47,7 @@ std::string verdict_of(const chain::SettingResult& judged) {
 
 }  // namespace
 
-std::string study_table(const chain::SettingsStudy& study) {
+std::string study_text(const chain::SettingsStudy& study) {
   std::size_t width = 7;
   for (const chain::SettingResult& r : study.results) width = std::max(width, r.outcome.name.size());
   std::string text =
@@ -56,6 +56,25 @@ std::string study_table(const chain::SettingsStudy& study) {
   for (const chain::SettingResult& r : study.results) text += line_of(r, study.packings, width);
   if (study.packings == chain::Packings::given) text += "errors in units of the packings' chance\n";
   return text + verdict_of(study.results.at(study.judged));
+}
+
+std::string study_text(const predict::IntegratorStudy& study) {
+  std::string text = fmt::format("least microseconds of a path with an error of at most {:.0e}\n", predict::kWantedError);
+  for (const predict::WorkPrecision& panel : study.panels) {
+    text += fmt::format("{}: {}\n", panel.path.name, panel.path.description);
+    for (const Integrator& integrator : predict::kIntegrators) {
+      const predict::WorkPoint* point = predict::quickest(panel, predict::kWantedError, &integrator);
+      text += point ? fmt::format("  {:<7} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
+                                  predict::to_string(integrator), point->microseconds, point->rhs_evaluations,
+                                  point->error, point->accuracy)
+                    : fmt::format("  {:<7} not reached\n", predict::to_string(integrator));
+    }
+  }
+  for (const predict::BatchTime& time : study.batch) {
+    text += fmt::format("batch: {} paths on {} threads by {} at {:.0e}: {:.2f} s\n", study.paths, study.threads,
+                        predict::to_string(time.integrator), time.accuracy, time.seconds);
+  }
+  return text;
 }
 
 }  // namespace grainlaw::app

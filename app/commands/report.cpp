@@ -1,0 +1,21 @@
+// grainlaw report DIR -o report.html: one page about a calibration and its predictions.
+
+#include "app/commands/commands.hpp"
+#include "app/report/report.hpp"
+#include "model/files/json_document.hpp"
+
+namespace grainlaw::app {
+
+Task declare_report(CLI::App& command) {
+  const auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>();
+  command.add_option("DIR", *folder, "folder of a calibration")->required();
+  command.add_option("-o,--output", *html, "file of the page, e.g. report.html")->required();
+  return [folder, html](Session& session) {
+    write_report(*folder, *html);
+    print_result(session.json ? json_text({{"report", html->string()}})
+                              : summary_table(*folder) + "\n" + html->string() + "\n");
+    return ExitCode::ok;
+  };
+}
+
+}  // namespace grainlaw::app

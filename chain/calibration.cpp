@@ -1,0 +1,165 @@
+#include "chain/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "fit/calibration_file.hpp"
+#include "fit/describe.hpp"
+#include "fit/leave_one_out.hpp"
+#include "fit/published/verdicts.hpp"
+#include "model/files/adopted_dataset.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/parameters_file.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::chain {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Parameters of another spec must not stay beside this one's data, should the work be interrupted.
+void remove_results_of_others(const fs::path& output, const std::string& spec) {
+  std::ifstream file(output / "spec.resolved.json", std::ios::binary);
+  if (std::string{std::istreambuf_iterator<char>(file), {}} == spec) return;
+  for (const char* name : {"parameters.json", "calibration.json"}) fs::remove(output / name);
+}
+
+/// Refuses before anything runs what no fit can be made of.
+void check_tests(const std::vector<TestRecord>& tests, const std::string& name) {
+  const auto missing = [&](const char* what, const char* mode) {
+    throw InvalidInput(
+        fmt::format("{}: tests: none of role calibration is {}; add {{\"mode\": \"{}\", \"role\": \"calibration\"}}",
+                    name, what, mode));
+  };
+  if (std::none_of(tests.begin(), tests.end(), is_isotropic_unloading)) missing("an isotropic unloading", "ISO");
+  if (std::none_of(tests.begin(), tests.end(), is_pure_shear)) missing("a shear at constant volume", "D2");
+}
+
+std::vector<TestRecord> calibration_tests(const std::vector<dem::PlannedTest>& planned) {
+  std::vector<TestRecord> tests;
+  for (const dem::PlannedTest& test : planned) {
+    if (test.role == Role::calibration) tests.push_back({test.name, test.role, test.path, {}, {}});
+  }
+  return tests;
+}
+
+/// One line for all: dataset.json has them by test.
+void log_warnings(const Dataset& dataset, Watch& watch) {
+  std::size_t tests = 0;
+  std::string first;
+  for (const DatasetTest& test : dataset.tests) {
+    if (test.warnings.empty()) continue;
+    if (first.empty()) first = fmt::format("{}: {}", test.record.name, test.warnings.front());
+    ++tests;
+  }
+  if (tests > 0)
+    watch.log(fmt::format("warning: {} of {} tests have warnings (listed in dataset.json), e.g. {}", tests,
+                          dataset.tests.size(), first));
+}
+
+/// Those of role description, and D3 where it is calibration beside D2: its own laws are Table 2's and Table 3's.
+std::vector<TestRecord> described_tests(const Dataset& dataset) {
+  const auto shears_by = [](const TestRecord& test, Mode mode) {
+    return is_pure_shear(test) && test.path.segments.front().mode == mode;
+  };
+  std::vector<TestRecord> all = tests_of(dataset, Role::description), fitted = tests_of(dataset, Role::calibration);
+  if (std::none_of(fitted.begin(), fitted.end(), [&](const TestRecord& t) { return shears_by(t, Mode::D2); }))
+    return all;
+  for (TestRecord& test : fitted) {
+    if (!shears_by(test, Mode::D3)) continue;
+    test.role = Role::description;
+    all.push_back(std::move(test));
+  }
+  return all;
+}
+
+/// The law and what it is compared with; calibration.json and parameters.json.
+fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output,
+                              const Execution& execution) {
+  Watch& watch = execution.watch;
+  const auto control = [&](const char* stage) { return watch.control(0, stage, execution.stop); };
+  watch.begin({1}, "");
+  const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
+  fit::Calibration calibration = fit::calibrate(tests, options, control("fit"));
+  calibration.law.dataset_digest = dataset.digest;
+  if (options.profiles) calibration.left_out = fit::leave_one_out(tests, options, control("fit without one packing"));
+  fit::ModeComparison modes;
+  modes.descriptions = fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c,
+                                     options, control("fit of the other modes"));
+  modes.verdicts = verdicts_of(calibration.law, modes.descriptions, dataset.seeds.size());
+  std::vector<TestRecord> shown = tests;
+  for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
+  modes.claims = claims_of(shown, calibration.law, modes.descriptions, options.steady_from);
+  watch.end();
+  const OrderedJson origin = provenance(execution);
+  write_calibration(output / "calibration.json", calibration, options, modes, origin);
+  write_parameters(output / "parameters.json", {calibration.law, Json(origin)});
+  for (const fit::Stage& stage : calibration.stages) {
+    if (!stage.converged)
+      watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
+  }
+  for (const std::string& warning : calibration.warnings) watch.log("warning: " + warning);
+  return calibration;
+}
+
+}  // namespace
+
+CalibrationInput read_calibration_input(const fs::path& spec, const fs::path& dataset) {
+  if (spec.empty() && dataset.empty())
+    throw InvalidInput("calibrate: misses SPEC.json; give it, or --dataset with the folder of a data set");
+  CalibrationInput input;
+  if (!dataset.empty()) {
+    input.dataset_folder = dataset_folder(dataset);
+    input.dataset = read_dataset(input.dataset_folder);
+    check_tests(tests_of(*input.dataset, Role::calibration), input.dataset_folder.string());
+  }
+  if (!spec.empty()) {
+    input.spec = dem::read_spec(spec);
+  } else if (!input.dataset->spec.is_null()) {
+    input.spec = dem::spec_from_json(input.dataset->spec, (input.dataset_folder / "dataset.json").string() + ": spec");
+  }
+  if (!input.dataset) check_tests(calibration_tests(plan(*input.spec)), spec.string());
+  return input;
+}
+
+fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Execution& execution) {
+  fit::CalibrationOptions options;
+  options.threads = execution.threads;
+  if (input.spec) options.coupling = coupling_of(input.spec->coupling);
+  return options;
+}
+
+Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const fs::path& output,
+                          const Execution& execution, dem::RunCounts& counts) {
+  const dem::RunStore store(output, "runs");
+  Dataset dataset =
+      dem::run_planned(plan(spec), Json(dem::spec_to_json(spec)), folder, store, execution, counts);
+  log_warnings(dataset, execution.watch);
+  return dataset;
+}
+
+CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOptions& options, const fs::path& output,
+                            const Execution& execution) {
+  make_output_folder(output);
+  const fs::path folder = make_subfolder(output, "dataset");
+  if (input.spec) input.spec->coupling = to_string(options.coupling);
+  const OrderedJson spec = input.spec ? dem::spec_to_json(*input.spec) : OrderedJson();
+  remove_results_of_others(output, input.dataset ? "" : json_text(spec));
+  if (input.spec) write_json(output / "spec.resolved.json", spec);
+  CalibrationResult result;
+  if (input.dataset) {
+    result.dataset = adopt(*input.dataset, input.dataset_folder, folder);
+    log_warnings(result.dataset, execution.watch);
+  } else {
+    result.dataset = simulate_data_set(*input.spec, folder, output, execution, result.counts);
+  }
+  const Stopwatch stopwatch;
+  result.calibration = fit_and_save(result.dataset, options, output, execution);
+  result.fit_seconds = stopwatch.seconds();
+  return result;
+}
+
+}  // namespace grainlaw::chain

@@ -1,0 +1,203 @@
+#include "chain/prediction.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <utility>
+
+#include "dem/runs/dataset_runs.hpp"
+#include "dem/runs/new_packings.hpp"
+#include "model/files/adopted_dataset.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/parameters_file.hpp"
+#include "model/vocabulary/error.hpp"
+#include "predict/bands.hpp"
+#include "predict/compare.hpp"
+#include "predict/mixed_control.hpp"
+#include "predict/rung_advice.hpp"
+
+namespace grainlaw::chain {
+namespace {
+
+namespace fs = std::filesystem;
+
+using predict::Initial;
+
+constexpr int kPointsPerSegment = 200;  // of a curve that no DEM run dictates
+
+/// The rung that is asked for, else reduced, evolution, and memory where it is calibrated.
+std::vector<Rung> rungs_of(const PredictionInput& input) {
+  const bool decides = law_decides(input.path.path);
+  if (input.model) {
+    if (decides && *input.model == Rung::reduced) {
+      throw InvalidInput(
+          fmt::format("{}: segments: leave the strain to the law; the reduced one is a closed form of the strain, give "
+                      "--model evolution",
+                      input.path_name));
+    }
+    return {*input.model};
+  }
+  std::vector<Rung> rungs{Rung::reduced, Rung::evolution};
+  if (has_values(input.law, "memory")) rungs.push_back(Rung::memory);
+  if (decides) rungs.erase(rungs.begin());  // a closed form of the strain
+  return rungs;
+}
+
+std::vector<Initial> initials_of(const PredictionInput& input) {
+  if (input.initial) return {*input.initial};
+  return {Initial::law, Initial::measured};
+}
+
+/// The law with everything that a curve needs besides its start and its points.
+struct Law {
+  const CalibratedLaw& calibrated;
+  std::vector<Rung> rungs;
+  const Path& path;
+  std::vector<StraightSegment> segments;  ///< none where the law decides where the path leads
+  RunControl control;
+
+  /// With bands, which take the start's error in where the law makes it.
+  predict::Prediction along(Rung model, Initial initial, const LawState<double>& start,
+                            const std::vector<predict::OutputPoint>& points) const {
+    return predict::predict_with_bands(model, calibrated, segments, start, initial == Initial::law, points,
+                                       control);
+  }
+
+  /// From the law's own start.
+  predict::Prediction at_equal_steps(Rung model) const {
+    const LawState<double> start = predict::state_from_law(calibrated.parameters, path.nu);
+    if (!law_decides(path))
+      return along(model, Initial::law, start, predict::uniform_points(segments, kPointsPerSegment));
+    return predict::predict_by_law(model, calibrated.parameters, calibrated.coupling, path, start, kPointsPerSegment,
+                                   predict::Tolerances{}, calibrated.range, control);
+  }
+};
+
+/// Curves at equal steps, from the law's own start.
+void add_free_curves(const Law& law, predict::PredictionFolder& content) {
+  for (const Rung model : law.rungs) {
+    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)),
+                              law.at_equal_steps(model)});
+  }
+}
+
+/// Curves at the rows of each DEM run, and how far they are from it.
+void add_compared_curves(const Law& law, const PredictionInput& input, predict::PredictionFolder& content) {
+  for (const DatasetTest& test : content.dem->tests) {
+    const auto points = predict::points_of(test.record);
+    const std::uint64_t seed = test.record.packing.seed;
+    for (const Rung model : law.rungs) {
+      for (const Initial initial : initials_of(input)) {
+        const auto start = initial == Initial::law
+                               ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
+                               : predict::state_from_row(test.record.rows.front());
+        predict::PredictedCurve curve{model, initial, seed,
+                                      fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
+                                      law.along(model, initial, start, points)};
+        content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
+        content.curves.push_back(std::move(curve));
+      }
+    }
+  }
+  for (const predict::CurveComparison& mean : predict::mean_over_seeds(content.comparisons))
+    content.comparisons.push_back(mean);
+}
+
+/// Which rung the path needs, and what each richer one changes on the curves from the law's start.
+void add_advice(const Law& law, predict::PredictionFolder& content) {
+  // where the law decides where the path leads, two rungs have no rows at the same strain
+  if (law_decides(law.path)) {
+    content.needed = {Rung::evolution, "the law decides the strain"};
+    return;
+  }
+  content.needed = predict::rung_needed(law.calibrated.parameters, law.segments);
+  const predict::PredictedCurve* cheaper = nullptr;
+  for (const predict::PredictedCurve& curve : content.curves) {
+    if (curve.seed) continue;
+    if (cheaper != nullptr)
+      content.changes.push_back(
+          {cheaper->model, curve.model, predict::difference(cheaper->prediction, curve.prediction)});
+    cheaper = &curve;
+  }
+}
+
+std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const PredictionInput& input) {
+  return plan(runs.spec, input.path, dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name), input.path_name);
+}
+
+Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& folder, const Execution& execution) {
+  make_output_folder(runs.store);
+  dem::RunCounts counts;
+  return dem::run_planned(planned_runs(runs, input), Json(dem::spec_to_json(runs.spec)), folder,
+                          dem::RunStore(runs.store, "runs"), execution, counts);
+}
+
+void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& content, Watch& watch) {
+  std::set<std::string> warned;
+  if (!law.converged) watch.log("warning: the calibration did not converge");
+  for (const predict::PredictedCurve& curve : content.curves) {
+    for (const std::string& warning : curve.prediction.warnings) {
+      if (warned.insert(warning).second) watch.log("warning: " + warning);
+    }
+  }
+}
+
+}  // namespace
+
+PredictionInput read_prediction_input(const fs::path& parameters, const fs::path& path) {
+  PredictionInput input{.law = read_parameters(parameters).law, .law_name = parameters.string(),
+                        .path = read_path(path), .path_name = path.string()};
+  input.parameters = {{"file", parameters.string()},
+                      {"sha256", sha256_of_file(parameters)},
+                      {"dataset_digest", input.law.dataset_digest}};
+  return input;
+}
+
+dem::Spec spec_of_calibration(const fs::path& spec, const fs::path& parameters) {
+  const fs::path file = spec.empty() ? parameters.parent_path() / "spec.resolved.json" : spec;
+  if (spec.empty() && !fs::exists(file)) {
+    throw InvalidInput(fmt::format(
+        "{}: not found; --dem prepares packings by the calibration's spec, give it with --spec", file.string()));
+  }
+  return dem::read_spec(file);
+}
+
+FinishedRuns read_runs_of(const Path& path, const fs::path& folder) {
+  const fs::path from = dataset_folder(folder);
+  FinishedRuns runs{read_dataset(from), from};
+  require_runs_of(path, runs.dataset, from.string());
+  return runs;
+}
+
+predict::PredictionFolder predict_path(const PredictionInput& input, const fs::path& output,
+                                       const Execution& execution) {
+  const Path& path = input.path.path;
+  const bool decides = law_decides(path);
+  if (input.initial == Initial::measured && !input.new_runs && !input.finished_runs)
+    throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem or --against too");
+  const Law law{input.law, rungs_of(input), path, decides ? std::vector<StraightSegment>{} : resolve(path),
+                {{}, execution.stop}};
+  for (const Rung model : law.rungs) require_parameters(input.law, model, input.law_name);
+  predict::state_from_law(input.law.parameters, path.nu);  // refuses a start below jamming before anything is written
+  if (input.new_runs) planned_runs(*input.new_runs, input);  // likewise what cannot be run
+
+  make_output_folder(output);
+  predict::PredictionFolder content;
+  content.name = output.filename().string();
+  content.path = path;
+  content.parameters = input.parameters;
+  if (input.new_runs) content.dem = make_runs(*input.new_runs, input, make_subfolder(output, "dem"), execution);
+  if (input.finished_runs)
+    content.dem = adopt(input.finished_runs->dataset, input.finished_runs->folder, make_subfolder(output, "dem"));
+  if (input.initial != Initial::measured) add_free_curves(law, content);
+  if (content.dem) add_compared_curves(law, input, content);
+  add_advice(law, content);
+  content.bands = decides ? "none: the law decides the strain" : available_bands(input.law);
+  content.provenance = Json(provenance(execution));
+  predict::write_prediction(output, content);
+  log_warnings(input.law, content, execution.watch);
+  return content;
+}
+
+}  // namespace grainlaw::chain

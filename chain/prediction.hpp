@@ -1,0 +1,62 @@
+#pragma once
+// The calibrated law along a strain path, with bands, and how far it is from runs of the same path: new ones in the engine,
+// on packings that the calibration has never seen, or finished ones.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dem/runs/spec_file.hpp"
+#include "model/calibrated_law.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/execution.hpp"
+#include "model/files/path_file.hpp"
+#include "predict/prediction_files.hpp"
+
+namespace grainlaw::chain {
+
+/// Runs of the path that are to be made.
+struct NewRuns {
+  dem::Spec spec;                    ///< how their packings are prepared
+  std::vector<std::uint64_t> seeds;  ///< of the packings; empty: PATH's, else as many as calibrated, following those
+  std::filesystem::path store;       ///< folder that holds runs/
+};
+
+/// Runs of the path that are there.
+struct FinishedRuns {
+  Dataset dataset;
+  std::filesystem::path folder;
+};
+
+struct PredictionInput {
+  CalibratedLaw law;
+  Json parameters = {};    ///< where the law is from: {file, sha256, dataset_digest}; for the prediction's files
+  std::string law_name;    ///< stands for it in messages
+  PathFile path;
+  std::string path_name;   ///< likewise
+  std::optional<Rung> model = {};                ///< none: reduced, evolution, and memory where it is calibrated
+  std::optional<predict::Initial> initial = {};  ///< none: the law's, and with runs the measured one too
+  std::optional<NewRuns> new_runs = {};
+  std::optional<FinishedRuns> finished_runs = {};
+};
+
+/// Reads parameters.json and PATH.json. Throws InvalidInput naming file and key.
+PredictionInput read_prediction_input(const std::filesystem::path& parameters, const std::filesystem::path& path);
+
+/// The spec by which new packings are prepared: `spec`, or when that is empty spec.resolved.json beside `parameters`. Throws
+/// InvalidInput naming the file.
+dem::Spec spec_of_calibration(const std::filesystem::path& spec, const std::filesystem::path& parameters);
+
+/// The runs in the folder of a data set or of a prediction. Throws InvalidInput unless all follow `path` and none was
+/// fitted.
+FinishedRuns read_runs_of(const Path& path, const std::filesystem::path& folder);
+
+/// Curves of each rung, comparisons, the rung that the path needs. Writes the folder `output`: prediction.json, a CSV for
+/// each curve, with runs dem/ and comparison.json. Throws InvalidInput before anything is written for a path, a rung or a
+/// start that the law cannot serve; NotConverged; Interrupted, after which finished runs are found again.
+predict::PredictionFolder predict_path(const PredictionInput& input, const std::filesystem::path& output,
+                                       const Execution& execution);
+
+}  // namespace grainlaw::chain

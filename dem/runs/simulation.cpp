@@ -1,0 +1,149 @@
+#include "dem/runs/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dem/files/sphere_table.hpp"
+#include "dem/files/state_file.hpp"
+#include "dem/runs/job_list.hpp"
+#include "dem/runs/preparation_json.hpp"
+#include "dem/runs/runs.hpp"
+#include "dem/runs/spec_file.hpp"
+#include "model/files/durable_file.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/files/path_json.hpp"
+#include "model/files/series_columns.hpp"
+#include "model/files/series_csv.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+TestStart start_of(const TestFile& test) {
+  return {test.preparation, test.preparation.rows, test.given, test.given_digest, test.relax, test.probes};
+}
+
+/// The jobs of the file: the preparation unless the packing is given, then the test unless there is none.
+void run_jobs_of(const TestFile& test, const RunStore& store, const Execution& execution) {
+  std::vector<Job> jobs;
+  if (!test.given) {
+    const bool done = store.find(run_key(preparation_request(test.preparation))).has_value();
+    const auto particles = static_cast<double>(test.preparation.packing.particles);
+    const std::string name = fmt::format("preparation of seed {}", test.preparation.packing.seed);
+    jobs.push_back({name, done ? 0 : particles * expected_steps(test.preparation), std::nullopt,
+                    [&, policy = policy_of(execution, name)](int threads, const RunControl& control) {
+                      PreparationOptions options = test.preparation;
+                      options.engine.threads = threads;
+                      ensure_preparation(store, options, policy, control);
+                    }});
+  }
+  if (test.start != Start::preparation) {
+    const double particles = test.given ? static_cast<double>(test.given->packing.size())
+                                        : static_cast<double>(test.preparation.packing.particles);
+    const bool done = store.find(run_key(test_request(start_of(test), test.path))).has_value();
+    jobs.push_back({"element test",
+                    done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
+                    jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
+                    [&, policy = policy_of(execution, "element test")](int threads, const RunControl& control) {
+                      TestStart start = start_of(test);
+                      start.preparation.engine.threads = threads;
+                      ensure_test(store, start, test.path, policy, control);
+                    }});
+  }
+  run_jobs(jobs, execution.threads, execution.watch, execution.stop);
+}
+
+/// What unloading.csv was observed on.
+Path unloading_branch(const PreparationOptions& options) {
+  TestRequest iso;
+  iso.mode = "ISO";
+  Spec spec;
+  spec.preparation = options;
+  return path_of(iso, 0, spec);
+}
+
+/// Last row of a series: what most want to see first.
+OrderedJson end_values(const Observation& row) {
+  OrderedJson values;
+  for (const auto& column : observation_columns()) {
+    for (const char* wanted : {"time", "eps_vol", "eps_dev", "nu", "P_star", "s_dev", "F_v", "F_dev", "C_star",
+                               "rattler_fraction", "energy_residual"}) {
+      if (column.name == wanted) values[column.title()] = number_or_null(column.get(row));
+    }
+  }
+  return values;
+}
+
+/// Why values of that row are null, by name.
+OrderedJson reasons_of(const OrderedJson& values) {
+  OrderedJson reasons = OrderedJson::object();
+  for (const auto& value : values.items()) {
+    if (!value.value().is_null()) continue;
+    reasons[value.key()] = value.key() == "C_star"  ? "no sphere has four contacts"
+                           : value.key() == "s_dev" ? "the pressure is not positive"
+                                                    : "it is not defined without spheres in contact";
+  }
+  return reasons;
+}
+
+/// Cell of end.csv, as TEST's key `cell` takes it.
+OrderedJson cell_to_json(const Eigen::Matrix3d& H) {
+  OrderedJson rows = OrderedJson::array();
+  for (int i = 0; i < 3; ++i) rows.push_back({H(i, 0), H(i, 1), H(i, 2)});
+  return rows;
+}
+
+/// Copies the files of a finished run into the user's folder.
+std::vector<std::string> publish(const RunStore& store, const std::string& key, const Json& record,
+                                 const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& file : record.at("files").items()) {
+    copy_durably(store.folder(key) / file.key(), folder / file.key());
+    names.push_back(file.key());
+  }
+  return names;
+}
+
+}  // namespace
+
+Simulation simulate(const TestFile& test, const fs::path& output, const Execution& execution) {
+  make_output_folder(output);
+  const RunStore store(output, "runs");
+  run_jobs_of(test, store, execution);
+
+  const bool prepared = test.start == Start::preparation;
+  const std::string key =
+      run_key(prepared ? preparation_request(test.preparation) : test_request(start_of(test), test.path));
+  const Json record = store.find(key).value();
+  std::vector<std::string> files = publish(store, key, record, output);
+  const Path path = prepared ? unloading_branch(test.preparation) : test.path;
+  Simulation simulation;
+  simulation.rows =
+      read_series(output / (prepared ? "unloading.csv" : "series.csv"), path, packing_from_record(record));
+  simulation.warnings = record.at("warnings").get<std::vector<std::string>>();
+  OrderedJson& summary = simulation.summary;
+  summary = {{"format", "grainlaw simulation"}, {"format_version", 1}, {"run", key}, {"rows", simulation.rows.size()}};
+  summary["packing"] = OrderedJson(record.at("packing"));
+  if (prepared) {
+    summary["states"] = OrderedJson(record.at("states"));
+  } else {
+    summary["path"] = path_to_json(test.path);
+    const Packing end = read_state(output / "end.state").packing;
+    write_spheres(output / "end.csv", end);
+    files.emplace_back("end.csv");
+    summary["cell"] = cell_to_json(end.H);
+  }
+  summary["end"] = end_values(simulation.rows.back());
+  summary["undefined"] = reasons_of(summary["end"]);
+  summary["cost"] = OrderedJson(record.at("cost"));
+  summary["warnings"] = simulation.warnings;
+  summary["files"] = files;
+  summary["provenance"] = provenance(execution);
+  write_json(output / "simulation.json", summary);
+  for (const std::string& warning : simulation.warnings) execution.watch.log("warning: " + warning);
+  return simulation;
+}
+
+}  // namespace grainlaw::dem
