@@ -65,16 +65,17 @@ void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& c
   record(calibration, fit_memory(trajectories, calibration.law.parameters, options, control, calibration.errors));
 }
 
-void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibration) {
-  calibration.law.range.nu_min = 1;
+ValidRange range_of(const std::vector<Trajectory>& trajectories) {
+  ValidRange range{1, 0, 0, 0};
   for (const Trajectory& t : trajectories) {
     if (t.rows.empty()) continue;
     const double e = t.rows.back().e;
-    calibration.law.range.nu_min = std::min({calibration.law.range.nu_min, t.nu_start, t.nu(e)});
-    calibration.law.range.nu_max = std::max({calibration.law.range.nu_max, t.nu_start, t.nu(e)});
-    calibration.law.range.eps_dev_max = std::max(calibration.law.range.eps_dev_max, t.direction.de * e);
-    calibration.law.range.eps_vol_max = std::max(calibration.law.range.eps_vol_max, std::abs(t.direction.dx) * e);
+    range.nu_min = std::min({range.nu_min, t.nu_start, t.nu(e)});
+    range.nu_max = std::max({range.nu_max, t.nu_start, t.nu(e)});
+    range.eps_dev_max = std::max(range.eps_dev_max, t.direction.de * e);
+    range.eps_vol_max = std::max(range.eps_vol_max, std::abs(t.direction.dx) * e);
   }
+  return range;
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   fit_memory_rung(sheared.reference, calibration, options, control);
   calibration.law.covariance = calibration.errors.covariance();
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
-  set_ranges(trajectories, calibration);
+  calibration.law.range = range_of(trajectories);
   calibration.law.converged = all_converged(calibration);
   return calibration;
 }
