@@ -9,7 +9,7 @@
 // nu_c ends at the latest 1e-4 below the lowest density of the data, where Eq. (11) has its infinite slope.
 
 #include "fit/stages/density_series.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::fit {
 

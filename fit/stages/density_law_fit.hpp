@@ -4,7 +4,7 @@
 // (at least a fifth of the mean), since rates scatter in proportion to their size.
 
 #include "fit/stages/density_series.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::fit {
 

@@ -4,7 +4,7 @@
 
 #include "fit/stages/evolution_problem.hpp"
 #include "fit/statistics/inherited_error.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 #include "fit/stages/trajectory.hpp"
 
 namespace grainlaw::fit {

@@ -8,7 +8,7 @@
 // Each test and quantity counts the same, in units of the scales in CalibrationOptions.
 
 #include "fit/statistics/inherited_error.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 #include "fit/stages/trajectory.hpp"
 
 namespace grainlaw::fit {

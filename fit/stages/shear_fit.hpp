@@ -5,7 +5,7 @@
 // strain, s_0 and F_0 measured in the first row. Windows and weights: shear_window.hpp.
 
 #include "fit/data_set.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::fit {
 

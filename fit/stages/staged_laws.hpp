@@ -7,7 +7,7 @@
 #include "fit/calibrate.hpp"
 #include "fit/data_set.hpp"
 #include "fit/stages/density_series.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::fit {
 

@@ -8,7 +8,7 @@
 
 #include <functional>
 
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 #include "model/parameters.hpp"
 
 namespace grainlaw::fit {

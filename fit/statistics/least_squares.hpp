@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/statistics/residual_block.hpp"
+#include "fit/statistics/problem.hpp"
 #include "model/vocabulary/run_control.hpp"
 
 namespace grainlaw::fit {

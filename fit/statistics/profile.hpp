@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::fit {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::testing {
 

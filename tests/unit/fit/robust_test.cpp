@@ -5,7 +5,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::fit {
 namespace {

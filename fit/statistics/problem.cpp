@@ -1,4 +1,4 @@
-#include "fit/statistics/residual_block.hpp"
+#include "fit/statistics/problem.hpp"
 
 #include <algorithm>
 #include <atomic>

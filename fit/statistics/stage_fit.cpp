@@ -1,4 +1,4 @@
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 
 #include <fmt/format.h>
 
