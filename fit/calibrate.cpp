@@ -11,8 +11,8 @@
 #include "fit/stages/evolution_fit.hpp"
 #include "fit/stages/lode_fit.hpp"
 #include "fit/stages/memory_fit.hpp"
-#include "fit/statistics/outliers.hpp"
 #include "fit/stages/staged_laws.hpp"
+#include "fit/statistics/outliers.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -48,8 +48,9 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
   }
 }
 
-void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
-                     const CalibrationOptions& options, const RunControl& control) {
+/// The stage of the memory rung, or why there is none; what is fixed by decision is said as well.
+StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
+                            const CalibrationOptions& options) {
   for (const auto& [name, value] :
        {std::pair{"memory.m", calibration.parameters.memory.m}, {"memory.a_P", calibration.parameters.memory.a_P}})
     calibration.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
@@ -57,11 +58,9 @@ void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& c
   for (const char* group :
        {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {
     if (has_values(calibration, group)) continue;
-    record(calibration,
-           no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state"));
-    return;
+    return no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state");
   }
-  record(calibration, fit_memory(trajectories, calibration.parameters, options, control, calibration.errors));
+  return memory_stage(trajectories, options);
 }
 
 void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibration) {
@@ -92,11 +91,10 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   const std::vector<Trajectory> trajectories =
       trajectories_of(data, calibration.parameters.isotropic.pressure.nu_c, options);
   const ByLodeAngle sheared = by_lode_angle(trajectories);
-  record(calibration, fit_evolution(sheared.reference, calibration.parameters, unseen_laws(calibration.shear), options,
-                                    control, calibration.errors));
+  run(evolution_stage(sheared.reference, unseen_laws(calibration.shear), options), calibration, options, control);
   set_anisotropy(sheared.reference, calibration, options);
-  record(calibration, fit_lode(sheared.others, calibration.parameters, options, control, calibration.errors));
-  fit_memory_rung(sheared.reference, calibration, options, control);
+  run(lode_stage(sheared.others, options), calibration, options, control);
+  run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
   calibration.covariance = calibration.errors.covariance();
   calibration.scatter = packing_scatter(data, calibration.parameters, options.iso_nu_min);
   set_ranges(trajectories, calibration);

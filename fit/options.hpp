@@ -1,18 +1,10 @@
 #pragma once
 // Choices of a calibration. Fit windows: equations.md 0.
 
-#include <string>
-
+#include "fit/statistics/problem.hpp"
 #include "model/parameters.hpp"
 
 namespace grainlaw::fit {
-
-enum class Loss {
-  squares,  ///< of the misfits
-  huber,    ///< rows that are far off count by their distance, robust.hpp
-};
-
-std::string to_string(Loss loss);
 
 struct CalibrationOptions {
   Coupling coupling = Coupling::energy;
@@ -27,7 +19,7 @@ struct CalibrationOptions {
   double stress_scale = 0.01;      ///< misfit of s that weighs one [-]
   double fabric_scale = 0.01;      ///< misfit of F that weighs one [-]
   Loss loss = Loss::squares;
-  int starts = 1;         ///< of the coupled stages, many_starts.hpp
+  int starts = 1;         ///< of the coupled stages, search.hpp
   bool profiles = false;  ///< of doubtful parameters, profile.hpp
   int threads = 1;        ///< results do not depend on it
 };

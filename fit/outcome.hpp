@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/statistics/search.hpp"
 #include "model/vocabulary/path.hpp"
 
 namespace grainlaw::fit {
@@ -62,12 +63,6 @@ struct Profile {
   double lower = 0, upper = 0;       ///< ends of the 95 % interval; NaN: not bounded within the parameter's bounds
   std::vector<ProfilePoint> points;  ///< values ascending
   std::string experiment;            ///< what would narrow it; may be empty
-};
-
-/// Where solutions from several starts ended, many_starts.hpp.
-struct StartSearch {
-  int tried = 1, at_minimum = 1;  ///< starts; those that ended at the lowest cost
-  double next_cost = kUndefined;  ///< of the next minimum; NaN: there is none
 };
 
 /// A calibration without one packing, leave_one_out.hpp.

@@ -42,8 +42,6 @@ std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const C
 /// A row without a network that carries: contacts may exist, P* is below what any jammed state here has.
 bool is_jammed(const Observation& row);
 
-inline constexpr double kNearestJamming = 1e-4;  ///< nu - nu_c that the lowest row of a fit keeps
-
 /// Smallest volume fraction of all points.
 double least_nu(const std::vector<DensitySeries>& series);
 

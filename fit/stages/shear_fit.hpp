@@ -10,9 +10,7 @@
 namespace grainlaw::fit {
 
 /// The problem of one quantity: parameters (limit, rate), one block.
-struct SaturationProblem {
-  std::vector<FreeParameter> parameters;
-  std::vector<ResidualBlock> blocks;
+struct SaturationProblem : Problem {
   std::vector<double> eps_dev, value, weight;  ///< rows of the block
 };
 SaturationProblem saturation_problem(const std::string& test, const std::string& quantity,

@@ -22,55 +22,35 @@ Calibration nothing_known() {
   return calibration;
 }
 
-void record(Calibration& calibration, const StageFit& fit) {
+void run(const StageDefinition& stage, Calibration& calibration, const CalibrationOptions& options,
+         const RunControl& control) {
+  const StageFit fit = run_stage(stage, calibration.parameters, options, control, calibration.errors);
   calibration.stages.push_back(fit.stage);
-  widen(calibration.errors.influence, fit.influence.cols());
-  for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
-    const NamedEstimate& e = fit.stage.estimates[k];
-    const auto i = static_cast<Eigen::Index>(parameter_index(e.name)), row = static_cast<Eigen::Index>(k);
-    calibration.estimates[static_cast<std::size_t>(i)] = e.estimate;
-    calibration.errors.degrees_of_freedom(i) = e.estimate.degrees_of_freedom;
-    calibration.errors.influence.row(i).setZero();
-    if (row < fit.influence.rows())
-      calibration.errors.influence.row(i).head(fit.influence.cols()) = fit.influence.row(row);
-  }
+  add_errors(fit, calibration.errors);
+  for (const auto& [name, estimate] : fit.stage.estimates) calibration.estimates[parameter_index(name)] = estimate;
 }
 
 void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
                         const CalibrationOptions& options, const RunControl& control) {
   const std::string window = fmt::format("{}, nu >= {:g}", branch, options.iso_nu_min);
-  LawParameters<double>& law = calibration.parameters;
-  const std::vector<StageFit> state_law = fit_state_law("", series, window, law.isotropic, options, control);
-  for (const StageFit& fit : state_law) record(calibration, fit);
-  const StageFit overlap = fit_overlap(series, window, state_law.back(), law.overlap_D, options, control);
-  if (overlap.solution.defined) law.overlap_D = overlap.solution.x(0);
-  record(calibration, overlap);
-  const StageFit trace = fit_fabric_trace(series, window, law.fabric_g3, options, control);
-  law.fabric_g3 = trace.solution.x(0);
-  record(calibration, trace);
+  const auto next = [&](const StageDefinition& stage) { run(stage, calibration, options, control); };
+  for (const StageDefinition& stage : state_law_stages(kUnloadingLaw, series, window)) next(stage);
+  next(overlap_stage(series, window, calibration.parameters.isotropic.pressure.nu_c));
+  next(fabric_trace_stage(series, window));
 }
 
 void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
                      const RunControl& control) {
   const std::vector<DensitySeries> series = steady_series(data, mode, options);
-  const std::string window =
-      fmt::format("means of {} over eps_dev >= {:g}, or from where it is steady (shear[]), one row per test",
-                  to_string(mode), options.steady_from);
-  if (!series.empty()) {
-    for (const StageFit& fit :
-         fit_state_law("steady_", series, window, calibration.parameters.steady, options, control)) {
-      record(calibration, fit);
-    }
-    return;
-  }
-  const std::string remedy =
-      fmt::format("no {} test reaches eps_dev = {:g}; shear further", to_string(mode), options.steady_from);
-  record(calibration,
-         skipped_stage("steady_coordination",
-                       {"steady_coordination.C1", "steady_coordination.alpha", "steady_coordination.nu_c"}, remedy));
-  record(calibration, skipped_stage("steady_rattlers", {"steady_rattlers.phi_c", "steady_rattlers.phi_v"}, remedy));
-  record(calibration, skipped_stage("steady_pressure",
-                                    {"steady_pressure.p0", "steady_pressure.gamma_p", "steady_pressure.nu_c"}, remedy));
+  const std::vector<StageDefinition> stages =
+      series.empty()
+          ? left_out_state_law(kSteadyLaw, fmt::format("no {} test reaches eps_dev = {:g}; shear further",
+                                                       to_string(mode), options.steady_from))
+          : state_law_stages(kSteadyLaw, series,
+                             fmt::format("means of {} over eps_dev >= {:g}, or from where it is steady (shear[]), one "
+                                         "row per test",
+                                         to_string(mode), options.steady_from));
+  for (const StageDefinition& stage : stages) run(stage, calibration, options, control);
 }
 
 void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
@@ -89,7 +69,8 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
     cluster.push_back(packing_of(data, *data.pure_shear[i]));
   }
   for (const ShearQuantity& quantity : kShearQuantities)
-    record(calibration, fit_density_law(quantity, of_law, cluster, calibration.parameters, options, control));
+    run(density_law_stage(quantity, of_law, cluster, calibration.parameters.shear_nu_c, options), calibration, options,
+        control);
 }
 
 bool all_converged(const Calibration& calibration) {

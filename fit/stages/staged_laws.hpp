@@ -7,15 +7,17 @@
 #include "fit/calibrate.hpp"
 #include "fit/data_set.hpp"
 #include "fit/stages/density_series.hpp"
-#include "fit/statistics/stage_fit.hpp"
+#include "fit/stages/stage.hpp"
 
 namespace grainlaw::fit {
 
 /// Parameters at their start, nothing identified but the fixed nu_c of Eq. (20), no stages, no errors.
 Calibration nothing_known();
 
-/// Takes over what a stage says; it replaces what earlier ones said of the same parameters.
-void record(Calibration& calibration, const StageFit& fit);
+/// Runs a stage with what was found so far and takes over what it says; it replaces what earlier ones said of the same
+/// parameters.
+void run(const StageDefinition& stage, Calibration& calibration, const CalibrationOptions& options,
+         const RunControl& control);
 
 /// Stages "coordination", "rattlers", "pressure", "overlap", "fabric_trace". `branch` names the rows in the stages' windows.
 void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,

@@ -3,7 +3,7 @@
 // are correlated, and runs of one packing share the packing (the naive (J^T J)^-1 covers a third of what it promises).
 // Cluster-robust sandwich over packings c, J and r weighted, H = J^T J:
 //   V = sum_c psi_c psi_c^T,   psi_c = -A^+ J_c^T (1 - J_c H^+ J_c^T)^(-1/2) r_c
-// A = H + S is the Hessian of the cost, S what the misfits of a model that does not hold exactly add to it (curvature.hpp).
+// A = H + S is the Hessian of the cost, S what the misfits of a model that does not hold exactly add to it (curvature()).
 // psi_c, the influence of packing c, is what it moved the parameters by. The power of the leverage undoes what a packing's
 // own share in the fit takes from its residual ("CR2"). For G packings that share alike it is the factor G/(G-1) in V,
 // which then is the variance of the mean of G fits, one to each packing; where a parameter rests on few of many packings it

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <thread>
 
+#include "model/parameters.hpp"
+
 namespace grainlaw::fit {
 namespace {
 
@@ -13,6 +15,14 @@ bool finite(const double* from, std::ptrdiff_t n) {
 }
 
 }  // namespace
+
+FreeParameter free_parameter(const std::string& name, double start) {
+  const ParameterInfo& info = parameter_table()[parameter_index(name)];
+  const double scale = std::max(std::abs(start), 1e-3 * (info.upper - info.lower));
+  return {name, start, info.lower, info.upper, scale};
+}
+
+std::string to_string(Loss loss) { return loss == Loss::huber ? "huber" : "squares"; }
 
 int row_count(const std::vector<ResidualBlock>& blocks) {
   int rows = 0;

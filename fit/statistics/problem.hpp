@@ -1,6 +1,6 @@
 #pragma once
-// What a stage asks to be made small: blocks of model - data with exact derivatives. No solver's header in here, so
-// that stages, tests and the covariance speak of the same thing.
+// A least-squares problem as it is solved, differentiated and judged: free parameters with their bounds, and blocks of
+// model - data with exact derivatives. No solver's header in here.
 
 #include <Eigen/Core>
 #include <functional>
@@ -19,7 +19,7 @@ struct Channel {
 
 struct ResidualBlock {
   std::string test;  ///< name of the test that the rows come from
-  int cluster = 0;   ///< rows of different clusters are independent, of one cluster they are not
+  int cluster = 0;   ///< the packing: rows of different clusters are independent, of one cluster they are not
   std::vector<Channel> channels;
   Eigen::VectorXd weight;  ///< of each row; the cost is half the sum of (weight (model - data))^2. 0: shown, not fitted
   /// model - data of all rows at the parameters `x`, unweighted, and its row-major Jacobian d/dx unless null. False when
@@ -27,6 +27,28 @@ struct ResidualBlock {
   std::function<bool(const double* x, double* misfit, double* jacobian)> evaluate;
 
   int rows() const { return static_cast<int>(weight.size()); }
+};
+
+struct FreeParameter {
+  std::string name;             ///< of parameter_table()
+  double start = 0;             ///< moved into the bounds when outside
+  double lower = 0, upper = 0;  ///< both attainable
+  double scale = 1;             ///< typical magnitude > 0; the solver sees x/scale
+};
+
+/// The parameter `name` of the table with its bounds, starting from `start`.
+FreeParameter free_parameter(const std::string& name, double start);
+
+enum class Loss {
+  squares,  ///< of the misfits
+  huber,    ///< rows that are far off count by their distance; docs/theory/fit.md, section Huber's loss
+};
+std::string to_string(Loss loss);
+
+struct Problem {
+  std::vector<FreeParameter> parameters;
+  std::vector<ResidualBlock> blocks;
+  Loss loss = Loss::squares;
 };
 
 /// Rows of all blocks.

@@ -7,11 +7,8 @@
 #include <limits>
 
 #include "fit/statistics/covariance.hpp"
-#include "fit/statistics/curvature.hpp"
-#include "fit/statistics/many_starts.hpp"
-#include "fit/statistics/robust.hpp"
+#include "fit/statistics/search.hpp"
 #include "model/vocabulary/error.hpp"
-#include "model/parameters.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -88,16 +85,12 @@ void StageFit::mark_not_identified(const std::string& name, const std::string& n
   influence.row(static_cast<Eigen::Index>(k)).setZero();
 }
 
-StageFit fit_stage(const std::string& name, const std::string& window, const std::vector<FreeParameter>& parameters,
-                   const std::vector<ResidualBlock>& blocks, const std::string& remedy, int threads,
-                   const RunControl& control, const Search& search) {
+StageFit fit_stage(const std::string& name, const std::string& window, const Problem& problem,
+                   const std::string& remedy, int threads, const RunControl& control, int starts) {
   StageFit fit;
-  const auto solve_one = [&](const std::vector<FreeParameter>& from) {
-    return search.loss == Loss::huber ? solve_huber(from, blocks, threads, name, control)
-                                      : solve(from, blocks, threads, name, control);
-  };
-  fit.solution = solve_from_many(parameters, search.starts, solve_one, fit.stage.starts);
-  if (fit.solution.defined) fit.solution.curvature = curvature(parameters, blocks, fit.solution, threads);
+  const std::vector<FreeParameter>& parameters = problem.parameters;
+  fit.solution = minimise(problem, starts, threads, name, control, fit.stage.starts);
+  if (fit.solution.defined) fit.solution.curvature = curvature(problem, fit.solution, threads);
   const Solution& solution = fit.solution;
   Stage& stage = fit.stage;
   stage.name = name;
@@ -120,7 +113,7 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
     }
     return fit;
   }
-  stage.tests = misfit_per_test(blocks, solution);
+  stage.tests = misfit_per_test(problem.blocks, solution);
 
   const ClusterCovariance errors = covariance_of(solution);
   fit.influence = errors.influence;
@@ -143,22 +136,6 @@ StageFit fit_stage(const std::string& name, const std::string& window, const std
         estimate.note = "rests on a single packing, hence no error; add seeds";
       }
     }
-  }
-  return fit;
-}
-
-StageFit skipped_stage(const std::string& name, const std::vector<std::string>& parameters, const std::string& remedy) {
-  StageFit fit;
-  fit.stage.name = name;
-  fit.stage.window = "left out: " + remedy;
-  fit.stage.termination = "left out";
-  fit.stage.converged = true;
-  const auto n = static_cast<Eigen::Index>(parameters.size());
-  fit.influence = Eigen::MatrixXd::Zero(n, 0);
-  fit.solution.x = Eigen::VectorXd::Constant(n, kUndefined);
-  for (const std::string& parameter : parameters) {
-    fit.stage.estimates.push_back({parameter, {}});
-    fit.mark_not_identified(parameter, remedy);
   }
   return fit;
 }

@@ -1,11 +1,10 @@
-#include "fit/stages/evolution_problem.hpp"
+#include "fit/stages/evolution_blocks.hpp"
 
 #include <ceres/jet.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "fit/stages/density_series.hpp"
 #include "fit/stages/trajectory_misfit.hpp"
 
 namespace grainlaw::fit {
@@ -14,21 +13,12 @@ namespace {
 constexpr int kMostParameters = 16;
 using Jet = ceres::Jet<double, kMostParameters>;
 
-double least_nu(const std::vector<Trajectory>& trajectories) {
-  double least = 1;
-  for (const Trajectory& t : trajectories) {
-    if (t.rows.empty()) continue;
-    least = std::min({least, t.nu_start, t.nu(t.rows.back().e)});
-  }
-  return least;
-}
-
 std::string quantity_name(char symbol, std::size_t axis) {
   return axis == 0 ? std::string(1, symbol) + "_par" : std::string(1, symbol) + "_axis" + std::to_string(axis + 1);
 }
 
-ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, const std::vector<std::size_t>& index,
-                       const CalibrationOptions& options) {
+ResidualBlock evolution_block(const Trajectory& t, const LawParameters<double>& fixed,
+                              const std::vector<std::size_t>& index, const CalibrationOptions& options) {
   const auto rows = static_cast<Eigen::Index>(t.rows.size());
   const auto axes = static_cast<Eigen::Index>(t.axes.size());
   ResidualBlock block;
@@ -68,20 +58,14 @@ ResidualBlock block_of(const Trajectory& t, const LawParameters<double>& fixed, 
 
 }  // namespace
 
-EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                                   const std::vector<std::string>& free, const CalibrationOptions& options) {
-  EvolutionProblem problem;
+std::vector<ResidualBlock> evolution_blocks(const std::vector<Trajectory>& trajectories,
+                                            const LawParameters<double>& law, const std::vector<std::string>& free,
+                                            const CalibrationOptions& options) {
   std::vector<std::size_t> index;
-  const auto value = fields(start);
-  for (const std::string& name : free) {
-    index.push_back(parameter_index(name));
-    FreeParameter p = free_parameter(name, *value[index.back()]);
-    if (name == "pressure.nu_c")
-      p.upper = std::max(p.lower, std::min(p.upper, least_nu(trajectories) - kNearestJamming));
-    problem.parameters.push_back(p);
-  }
-  for (const Trajectory& t : trajectories) problem.blocks.push_back(block_of(t, start, index, options));
-  return problem;
+  for (const std::string& name : free) index.push_back(parameter_index(name));
+  std::vector<ResidualBlock> blocks;
+  for (const Trajectory& t : trajectories) blocks.push_back(evolution_block(t, law, index, options));
+  return blocks;
 }
 
 }  // namespace grainlaw::fit

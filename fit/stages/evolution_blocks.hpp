@@ -8,19 +8,15 @@
 // stands across them is the noise of a finite packing, and no parameter moves it.
 // Weights: shear_window.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
 
-#include "fit/statistics/least_squares.hpp"
 #include "fit/options.hpp"
 #include "fit/stages/trajectory.hpp"
+#include "fit/statistics/problem.hpp"
 
 namespace grainlaw::fit {
 
-struct EvolutionProblem {
-  std::vector<FreeParameter> parameters;
-  std::vector<ResidualBlock> blocks;  ///< one per trajectory
-};
-
-/// Of the parameters `free`, at most 16 names of parameter_table(), from `start`; the others keep its values.
-EvolutionProblem evolution_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                                   const std::vector<std::string>& free, const CalibrationOptions& options);
+/// One per trajectory. Of the parameters `free`, at most 16 names of parameter_table(); the others have the values of `law`.
+std::vector<ResidualBlock> evolution_blocks(const std::vector<Trajectory>& trajectories,
+                                            const LawParameters<double>& law, const std::vector<std::string>& free,
+                                            const CalibrationOptions& options);
 
 }  // namespace grainlaw::fit
