@@ -9,10 +9,10 @@
 namespace grainlaw::app::report {
 
 /// Every parameter: meaning, symbol, equation, ours +- one standard error, 95 % interval, published, relative difference.
-Table parameter_comparison(const fit::Calibration& calibration);
+Table parameter_comparison(const CalibratedLaw& law);
 /// What the parameters mean: C*, phi_r, P*, s_max, beta_s, F_max, beta_F at round densities of the calibrated range.
 enum class CurveGroup { law, steady_state };
-Table curve_comparison(const fit::Calibration& calibration, CurveGroup which);
+Table curve_comparison(const CalibratedLaw& law, CurveGroup which);
 /// Every verdict on a parameter, or on a curve, mode by mode.
 Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters);
 /// What the paper says beyond Tables 2 and 3.
@@ -44,9 +44,9 @@ Table provenance_table(const ReportInput& input);
 Table spec_table(const ReportInput& input);
 
 /// The value of an estimate with its error, or its status in words.
-std::string estimate_text(const fit::Estimate& estimate);
+std::string estimate_text(const Estimate& estimate);
 
 /// Fixed-width text of parameter_comparison's first columns, for a terminal.
-std::string parameter_summary(const fit::Calibration& calibration);
+std::string parameter_summary(const CalibratedLaw& law);
 
 }  // namespace grainlaw::app::report

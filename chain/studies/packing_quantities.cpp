@@ -15,8 +15,8 @@ struct OnePacking {
   std::vector<double> values;  ///< NaN where the packing does not show it [-]
 };
 
-double value_of(const fit::Estimate& estimate) {
-  return estimate.status == fit::Status::not_identified ? kMissing : estimate.value;
+double value_of(const Estimate& estimate) {
+  return estimate.status == Status::not_identified ? kMissing : estimate.value;
 }
 
 OnePacking quantities_of(const Dataset& dataset, std::uint64_t seed) {
@@ -35,17 +35,17 @@ OnePacking quantities_of(const Dataset& dataset, std::uint64_t seed) {
     result.names.push_back(name);
     result.values.push_back(value);
   };
-  const bool has_pressure = fit::has_values(c, "pressure"), has_coordination = fit::has_values(c, "coordination");
+  const bool has_pressure = has_values(c.law, "pressure"), has_coordination = has_values(c.law, "coordination");
   for (const fit::ShearFit& shear : c.shear) {
     const std::string at = "@" + dem::density_text(std::round(shear.nu * 1e6) / 1e6);
-    add("P_star" + at, has_pressure && has_coordination ? c.parameters.isotropic.P_star(shear.nu) : kMissing);
-    add("C_star" + at, has_coordination ? c.parameters.isotropic.coordination.C_star(shear.nu) : kMissing);
+    add("P_star" + at, has_pressure && has_coordination ? c.law.parameters.isotropic.P_star(shear.nu) : kMissing);
+    add("C_star" + at, has_coordination ? c.law.parameters.isotropic.coordination.C_star(shear.nu) : kMissing);
     add("s_max" + at, value_of(shear.s_max));
     add("beta_s" + at, value_of(shear.beta_s));
     add("F_max" + at, value_of(shear.F_max));
     add("beta_F" + at, value_of(shear.beta_F));
   }
-  add("nu_c", has_pressure ? c.parameters.isotropic.pressure.nu_c : kMissing);
+  add("nu_c", has_pressure ? c.law.parameters.isotropic.pressure.nu_c : kMissing);
   return result;
 }
 

@@ -14,20 +14,20 @@ namespace grainlaw::fit {
 
 Calibration nothing_known() {
   Calibration calibration;
-  calibration.parameters = start_parameters();
+  calibration.law.parameters = start_parameters();
   calibration.errors = no_errors();
-  calibration.covariance = calibration.errors.covariance();
-  calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c, kUndefined, Status::fixed,
-                                                          "degenerate with Q_c and alpha of Eq. (20)"};
+  calibration.law.covariance = calibration.errors.covariance();
+  calibration.law.estimates[parameter_index("shear.nu_c")] = {
+      calibration.law.parameters.shear_nu_c, kUndefined, Status::fixed, "degenerate with Q_c and alpha of Eq. (20)"};
   return calibration;
 }
 
 void run(const StageDefinition& stage, Calibration& calibration, const CalibrationOptions& options,
          const RunControl& control) {
-  const StageFit fit = run_stage(stage, calibration.parameters, options, control, calibration.errors);
+  const StageFit fit = run_stage(stage, calibration.law.parameters, options, control, calibration.errors);
   calibration.stages.push_back(fit.stage);
   add_errors(fit, calibration.errors);
-  for (const auto& [name, estimate] : fit.stage.estimates) calibration.estimates[parameter_index(name)] = estimate;
+  for (const auto& [name, estimate] : fit.stage.estimates) calibration.law.estimates[parameter_index(name)] = estimate;
 }
 
 void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
@@ -35,7 +35,7 @@ void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeri
   const std::string window = fmt::format("{}, nu >= {:g}", branch, options.iso_nu_min);
   const auto next = [&](const StageDefinition& stage) { run(stage, calibration, options, control); };
   for (const StageDefinition& stage : state_law_stages(kUnloadingLaw, series, window)) next(stage);
-  next(overlap_stage(series, window, calibration.parameters.isotropic.pressure.nu_c));
+  next(overlap_stage(series, window, calibration.law.parameters.isotropic.pressure.nu_c));
   next(fabric_trace_stage(series, window));
 }
 
@@ -56,7 +56,8 @@ void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, c
 void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
                     const RunControl& control) {
   Stage stage;
-  calibration.shear = fit_shear_tests(data, calibration.parameters.isotropic.pressure.nu_c, options, control, stage);
+  calibration.shear =
+      fit_shear_tests(data, calibration.law.parameters.isotropic.pressure.nu_c, options, control, stage);
   calibration.stages.push_back(stage);
   const std::vector<ShearFit>& shear = calibration.shear;
   const bool any_like_D2 =
@@ -69,7 +70,7 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
     cluster.push_back(packing_of(data, *data.pure_shear[i]));
   }
   for (const ShearQuantity& quantity : kShearQuantities)
-    run(density_law_stage(quantity, of_law, cluster, calibration.parameters.shear_nu_c, options), calibration, options,
+    run(density_law_stage(quantity, of_law, cluster, calibration.law.parameters.shear_nu_c, options), calibration, options,
         control);
 }
 

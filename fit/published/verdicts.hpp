@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/published/paper_claims.hpp"
+#include "fit/published/paper_claims.hpp"
 #include "fit/describe.hpp"
 
 namespace grainlaw::app {
@@ -32,7 +32,7 @@ struct ModeComparison {
 };
 
 /// Curves at .68 (where the rows reach it), .70, .74, .80 and .82; `packings` n is the number of seeds.
-std::vector<Verdict> verdicts_of(const fit::Calibration& calibration, const std::vector<fit::Description>& descriptions,
+std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<fit::Description>& descriptions,
                                  std::size_t packings);
 
 }  // namespace grainlaw::app

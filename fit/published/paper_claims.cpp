@@ -1,4 +1,4 @@
-#include "app/published/paper_claims.hpp"
+#include "fit/published/paper_claims.hpp"
 
 #include <fmt/format.h>
 
@@ -179,11 +179,9 @@ void add_collapse(const std::vector<TestRecord>& tests, double steady_from, Clai
 }
 
 /// Value of a curve of one mode with its error.
-Mean at(const fit::Calibration* c, const DensityCurve& curve, double nu) {
-  if (c == nullptr ||
-      !std::all_of(curve.groups.begin(), curve.groups.end(), [&](const char* g) { return fit::has_values(*c, g); }))
-    return {};
-  return {curve.of(c->parameters, nu), fit::standard_error(*c, curve, nu)};
+Mean at(const CalibratedLaw* law, const DensityCurve& curve, double nu) {
+  if (law == nullptr || !has_values(*law, curve)) return {};
+  return {curve.of(law->parameters, nu), fit::standard_error(*law, curve, nu)};
 }
 
 /// Difference of two fits; they are of the same packings, whose common scatter this counts twice.
@@ -191,14 +189,14 @@ Mean operator-(const Mean& a, const Mean& b) {
   return {a.value - b.value, std::hypot(a.standard_error, b.standard_error)};
 }
 
-void add_orders(const fit::Calibration& iso, const std::vector<fit::Description>& descriptions, std::size_t packings,
+void add_orders(const CalibratedLaw& iso, const std::vector<fit::Description>& descriptions, std::size_t packings,
                 Claims& claims) {
-  const auto mode = [&](const char* name) -> const fit::Calibration* {
+  const auto mode = [&](const char* name) -> const CalibratedLaw* {
     const auto d =
         std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& x) { return x.name == name; });
-    return d == descriptions.end() ? nullptr : &d->calibration;
+    return d == descriptions.end() ? nullptr : &d->calibration.law;
   };
-  const fit::Calibration *uni = mode("UNI"), *d3 = mode("D3");
+  const CalibratedLaw *uni = mode("UNI"), *d3 = mode("D3");
   using P = const LawParameters<double>&;
   const auto jamming = [&](const std::string& what, const DensityCurve& unloading, const DensityCurve& steady_state) {
     const Mean a = at(&iso, unloading, 0), b = at(uni, unloading, 0), c = at(&iso, steady_state, 0),
@@ -241,15 +239,15 @@ void add_orders(const fit::Calibration& iso, const std::vector<fit::Description>
 }
 
 /// Eq. (19): one A* = a0 F_dev in both rows; ours are two, a B* F_dev. The error of B* is small beside that of a.
-void add_anisotropy(const fit::Calibration& c, std::size_t packings, Claims& claims) {
+void add_anisotropy(const CalibratedLaw& law, std::size_t packings, Claims& claims) {
   constexpr double nu = 0.74;
-  if (!fit::has_values(c, "pressure") || nu < c.nu_min || nu > c.nu_max) return;
-  const double B = c.parameters.isotropic.B_star(nu);
+  if (!has_values(law, "pressure") || nu < law.range.nu_min || nu > law.range.nu_max) return;
+  const double B = law.parameters.isotropic.B_star(nu);
   for (const auto& [name, statement] :
        {std::pair{"anisotropy.a1", "A1*/F_dev, the pressure's row; the paper has one A"},
         {"anisotropy.a2", "A2*/F_dev, the row of deviatoric stress; the paper has one A"}}) {
-    const fit::Estimate& a = c.estimates[parameter_index(name)];
-    if (a.status == fit::Status::not_identified) continue;
+    const Estimate& a = law.estimates[parameter_index(name)];
+    if (a.status == Status::not_identified) continue;
     claims.add("Eq. 19", statement, nu, {a.value * B, a.standard_error * B}, packings, {0.137, 0.0005});
   }
 }
@@ -283,17 +281,17 @@ void judge_equal(Claim& claim, std::size_t packings) {
     claim.verdict = std::abs(claim.ours) <= range ? "agrees" : "differs";
 }
 
-std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const fit::Calibration& calibration,
+std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const CalibratedLaw& law,
                              const std::vector<fit::Description>& descriptions, double steady_from) {
   std::set<std::uint64_t> seeds;
   for (const TestRecord& test : tests) seeds.insert(test.packing.seed);
   Claims claims;
   add_kinematics(tests, claims);
   add_uniaxial_end(tests, claims);
-  add_orders(calibration, descriptions, seeds.size(), claims);
+  add_orders(law, descriptions, seeds.size(), claims);
   add_branches(tests, steady_from, claims);
   add_collapse(tests, steady_from, claims);
-  add_anisotropy(calibration, seeds.size(), claims);
+  add_anisotropy(law, seeds.size(), claims);
   return claims.all;
 }
 

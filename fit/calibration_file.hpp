@@ -4,15 +4,15 @@
 
 #include <filesystem>
 
-#include "model/files/json_document.hpp"
-#include "app/published/verdicts.hpp"
+#include "fit/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
+#include "model/files/json_document.hpp"
 
 namespace grainlaw::app {
 
 void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
                        const fit::CalibrationOptions& options, const ModeComparison& modes,
-                       const std::string& dataset_digest, const OrderedJson& provenance);
+                       const OrderedJson& provenance);
 
 /// Reads stages and shear fits into `calibration`; of the descriptions, too, only these. Throws InvalidInput naming file
 /// and key.

@@ -1,4 +1,4 @@
-#include "app/files/fit_checks_json.hpp"
+#include "fit/fit_checks_json.hpp"
 
 #include <cmath>
 
@@ -46,7 +46,7 @@ OrderedJson left_out_to_json(const fit::Calibration& calibration) {
     notes.push_back(fit.note);
   }
   for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const double stated = calibration.estimates[i].standard_error;
+    const double stated = calibration.law.estimates[i].standard_error;
     if (!std::isfinite(stated)) continue;
     OrderedJson values = OrderedJson::array();
     for (const fit::LeftOut& fit : calibration.left_out) values.push_back(number_or_null(fit.value[i]));

@@ -1,15 +1,15 @@
-#include "app/files/calibration_file.hpp"
+#include "fit/calibration_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "chain/estimate_json.hpp"
-#include "app/files/fit_checks_json.hpp"
-#include "model/files/one_line.hpp"
+#include "fit/fit_checks_json.hpp"
+#include "model/estimate_json.hpp"
 #include "fit/statistics/curve_error.hpp"
 #include "model/density_curves.hpp"
+#include "model/files/one_line.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -56,7 +56,8 @@ OrderedJson stage_to_json(const fit::Stage& stage) {
   OrderedJson& profiles = object["profiles"] = OrderedJson::array();
   for (const fit::Profile& profile : stage.profiles) profiles.push_back(profile_to_json(profile));
   OrderedJson& estimates = object["estimates"] = OrderedJson::object();
-  for (const fit::NamedEstimate& named : stage.estimates) estimates[named.name] = chain::estimate_to_json(named.estimate);
+  for (const fit::NamedEstimate& named : stage.estimates)
+    estimates[named.name] = estimate_to_json(named.estimate);
   OrderedJson& tests = object["tests"] = OrderedJson::array();
   for (const fit::TestResidual& residual : stage.tests) tests.push_back(residual_to_json(residual));
   return object;
@@ -77,7 +78,7 @@ fit::Stage stage_from_json(const Json& object) {
   stage.starts = starts_from_json(object.at("starts"));
   for (const Json& profile : object.at("profiles")) stage.profiles.push_back(profile_from_json(profile));
   for (const auto& item : object.at("estimates").items())
-    stage.estimates.push_back({item.key(), chain::estimate_from_json(item.value())});
+    stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
   for (const Json& residual : object.at("tests")) stage.tests.push_back(residual_from_json(residual));
   return stage;
 }
@@ -98,7 +99,7 @@ constexpr std::array<std::pair<const char*, double fit::ShearFit::*>, 13> kShear
     {"steady_since_F", &fit::ShearFit::steady_since_F},
     {"steady_since_P", &fit::ShearFit::steady_since_P},
 }};
-constexpr std::array<std::pair<const char*, fit::Estimate fit::ShearFit::*>, 4> kShearEstimates{{
+constexpr std::array<std::pair<const char*, Estimate fit::ShearFit::*>, 4> kShearEstimates{{
     {"s_max", &fit::ShearFit::s_max},
     {"beta_s", &fit::ShearFit::beta_s},
     {"F_max", &fit::ShearFit::F_max},
@@ -108,7 +109,7 @@ constexpr std::array<std::pair<const char*, fit::Estimate fit::ShearFit::*>, 4> 
 OrderedJson shear_to_json(const fit::ShearFit& shear) {
   OrderedJson object{{"test", shear.test}, {"mode", to_string(shear.mode)}, {"seed", shear.seed}};
   for (const auto& [key, member] : kShearNumbers) object[key] = number_or_null(shear.*member);
-  for (const auto& [key, member] : kShearEstimates) object[key] = chain::estimate_to_json(shear.*member);
+  for (const auto& [key, member] : kShearEstimates) object[key] = estimate_to_json(shear.*member);
   return object;
 }
 
@@ -120,18 +121,17 @@ fit::ShearFit shear_from_json(const Json& object) {
   }
   shear.seed = object.at("seed");
   for (const auto& [key, member] : kShearNumbers) shear.*member = number_or_nan(object.at(key));
-  for (const auto& [key, member] : kShearEstimates) shear.*member = chain::estimate_from_json(object.at(key));
+  for (const auto& [key, member] : kShearEstimates) shear.*member = estimate_from_json(object.at(key));
   return shear;
 }
 
 /// Ours beside the published curves of `mode`; null where the data do not determine ours.
 OrderedJson curves_to_json(const fit::Calibration& calibration, const std::string& mode) {
   OrderedJson curves = OrderedJson::array();
-  for (const CurvePoint& point :
-       curve_points(calibration.parameters, published_parameters(mode), calibration.nu_min, calibration.nu_max)) {
-    const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
-                                   [&](const char* group) { return fit::has_values(calibration, group); });
-    const double error = known ? fit::standard_error(calibration, *point.curve, point.nu) : std::nan("");
+  for (const CurvePoint& point : curve_points(calibration.law.parameters, published_parameters(mode),
+                                              calibration.law.range.nu_min, calibration.law.range.nu_max)) {
+    const bool known = has_values(calibration.law, *point.curve);
+    const double error = known ? fit::standard_error(calibration.law, *point.curve, point.nu) : std::nan("");
     curves.push_back({{"quantity", point.curve->quantity},
                       {"nu", point.nu},
                       {"ours", known ? number_or_null(point.ours) : OrderedJson()},
@@ -214,12 +214,12 @@ Claim claim_from_json(const Json& object) {
 
 void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
                        const fit::CalibrationOptions& options, const ModeComparison& modes,
-                       const std::string& dataset_digest, const OrderedJson& provenance) {
+                       const OrderedJson& provenance) {
   OrderedJson document;
   document["format"] = "grainlaw calibration";
   document["format_version"] = 1;
-  document["coupling"] = to_string(calibration.coupling);
-  document["converged"] = calibration.converged;
+  document["coupling"] = to_string(calibration.law.coupling);
+  document["converged"] = calibration.law.converged;
   document["options"] = {{"iso_nu_min", options.iso_nu_min},
                          {"rate_window", options.rate_window},
                          {"steady_from", options.steady_from},
@@ -232,7 +232,7 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
                          {"fabric_scale", options.fabric_scale},
                          {"loss", to_string(options.loss)},
                          {"starts", options.starts}};
-  document["dataset_digest"] = dataset_digest;
+  document["dataset_digest"] = calibration.law.dataset_digest;
   document["stages"] = stages_to_json(calibration);
   document["shear"] = shears_to_json(calibration);
   document["leave_one_out"] = left_out_to_json(calibration);
