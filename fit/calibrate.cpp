@@ -6,14 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 #include "fit/stages/density_law_fit.hpp"
 #include "fit/stages/evolution_fit.hpp"
 #include "fit/stages/lode_fit.hpp"
 #include "fit/stages/memory_fit.hpp"
-#include "fit/stages/staged_laws.hpp"
-#include "fit/statistics/outliers.hpp"
-#include "fit/statistics/packing_scatter.hpp"
+#include "fit/staged_laws.hpp"
+#include "fit/data/outliers.hpp"
+#include "fit/data/packing_scatter.hpp"
 
 namespace grainlaw::fit {
 namespace {

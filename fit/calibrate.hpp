@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "fit/outcome.hpp"
 #include "fit/statistics/inherited_error.hpp"
 #include "model/calibrated_law.hpp"

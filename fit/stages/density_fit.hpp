@@ -8,7 +8,7 @@
 //   Eq. (13): <delta>_c/<r> = D ln(nu/nu_c), nu_c that of Eq. (14)
 // nu_c ends at the latest kNearestJamming below the lowest density of the data, where Eq. (11) has its infinite slope.
 
-#include "fit/stages/density_series.hpp"
+#include "fit/data/density_series.hpp"
 #include "fit/stages/stage.hpp"
 
 namespace grainlaw::fit {

@@ -3,7 +3,7 @@
 // F_max and beta_F. nu_c is given, not fitted: it is degenerate with Q_c and alpha. Each value weighs by its own magnitude
 // (at least a fifth of the mean), since rates scatter in proportion to their size.
 
-#include "fit/stages/density_series.hpp"
+#include "fit/data/density_series.hpp"
 #include "fit/stages/stage.hpp"
 
 namespace grainlaw::fit {

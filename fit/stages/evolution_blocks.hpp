@@ -8,7 +8,7 @@
 // stands across them is the noise of a finite packing, and no parameter moves it.
 // Weights: shear_window.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
 
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "fit/stages/trajectory.hpp"
 #include "fit/statistics/problem.hpp"
 

@@ -2,7 +2,7 @@
 // What the stage "evolution" may claim: limits and rates of Eq. (20) only where shear goes on for long enough to tell the
 // limit from the slope, at enough densities; a rate or a coupling only where it acts on something.
 
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "fit/stages/trajectory.hpp"
 #include "fit/statistics/stage_fit.hpp"
 

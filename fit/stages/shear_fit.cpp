@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/stages/density_series.hpp"
+#include "fit/data/density_series.hpp"
 #include "fit/stages/measured_state.hpp"
-#include "fit/stages/shear_window.hpp"
+#include "fit/data/shear_rows.hpp"
 #include "fit/stages/steady_state.hpp"
 #include "model/reduced_law.hpp"
 

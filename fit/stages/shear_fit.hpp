@@ -4,7 +4,7 @@
 // s = <sigma',N>/P and F = <F',N> signed along the shear (norms are biased upwards in a finite packing), e the deviatoric
 // strain, s_0 and F_0 measured in the first row. Windows and weights: shear_window.hpp.
 
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 #include "fit/statistics/stage_fit.hpp"
 
 namespace grainlaw::fit {

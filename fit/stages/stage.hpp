@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "fit/statistics/inherited_error.hpp"
 #include "fit/statistics/stage_fit.hpp"
 #include "model/parameters.hpp"

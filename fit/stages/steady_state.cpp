@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/stages/density_series.hpp"
+#include "fit/data/density_series.hpp"
 #include "fit/stages/measured_state.hpp"
 
 namespace grainlaw::fit {

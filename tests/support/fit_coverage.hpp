@@ -18,7 +18,7 @@
 
 #include "fit/calibrate.hpp"
 #include "fit/stages/density_fit.hpp"
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"

@@ -1,4 +1,4 @@
-#include "fit/row_checks.hpp"
+#include "fit/data/row_checks.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "fit/stages/shear_window.hpp"
+#include "fit/data/shear_rows.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 // for s_par, F_par and dP*/B*, the volumetric strain that P* is off by: packings differ in their jamming density, and near
 // it that changes P* by more of its value than farther away. B* of ISO unloading at the row's nu.
 
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 #include "model/calibrated_law.hpp"
 
 namespace grainlaw::fit {

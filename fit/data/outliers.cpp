@@ -1,4 +1,4 @@
-#include "fit/statistics/outliers.hpp"
+#include "fit/data/outliers.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "fit/stages/density_series.hpp"
+#include "fit/data/density_series.hpp"
 #include "model/evolution.hpp"
 
 namespace grainlaw::fit {

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 
 namespace grainlaw::fit {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 
 namespace grainlaw::fit {
 

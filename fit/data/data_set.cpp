@@ -1,4 +1,4 @@
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "fit/row_checks.hpp"
+#include "fit/data/row_checks.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::fit {

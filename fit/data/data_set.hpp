@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::fit {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "fit/calibrate.hpp"
-#include "fit/data_set.hpp"
-#include "fit/stages/density_series.hpp"
+#include "fit/data/data_set.hpp"
+#include "fit/data/density_series.hpp"
 #include "fit/stages/stage.hpp"
 
 namespace grainlaw::fit {

@@ -1,4 +1,4 @@
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 
 #include <fmt/format.h>
 
