@@ -7,13 +7,13 @@
 #include <limits>
 
 #include "fit/data/data_set.hpp"
+#include "fit/data/outliers.hpp"
+#include "fit/data/packing_scatter.hpp"
+#include "fit/staged_laws.hpp"
 #include "fit/stages/density_law_fit.hpp"
 #include "fit/stages/evolution_fit.hpp"
 #include "fit/stages/lode_fit.hpp"
 #include "fit/stages/memory_fit.hpp"
-#include "fit/staged_laws.hpp"
-#include "fit/data/outliers.hpp"
-#include "fit/data/packing_scatter.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -52,10 +52,10 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
 /// The stage of the memory rung, or why there is none; what is fixed by decision is said as well.
 StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
                             const CalibrationOptions& options) {
-  for (const auto& [name, value] :
-       {std::pair{"memory.m", calibration.law.parameters.memory.m}, {"memory.a_P", calibration.law.parameters.memory.a_P}})
+  for (const auto& [name, value] : {std::pair{"memory.m", calibration.law.parameters.memory.m},
+                                    {"memory.a_P", calibration.law.parameters.memory.a_P}})
     calibration.law.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
-                                                    "by docs/decisions/0005-memory-law.md"};
+                                                        "by docs/decisions/0005-memory-law.md"};
   for (const char* group :
        {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {
     if (has_values(calibration.law, group)) continue;
@@ -65,14 +65,15 @@ StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibra
 }
 
 void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibration) {
-  calibration.law.range.nu_min = 1;
+  ValidRange& range = calibration.law.range;
+  range.nu_min = 1;
   for (const Trajectory& t : trajectories) {
     if (t.rows.empty()) continue;
     const double e = t.rows.back().e;
-    calibration.law.range.nu_min = std::min({calibration.law.range.nu_min, t.nu_start, t.nu(e)});
-    calibration.law.range.nu_max = std::max({calibration.law.range.nu_max, t.nu_start, t.nu(e)});
-    calibration.law.range.eps_dev_max = std::max(calibration.law.range.eps_dev_max, t.direction.de * e);
-    calibration.law.range.eps_vol_max = std::max(calibration.law.range.eps_vol_max, std::abs(t.direction.dx) * e);
+    range.nu_min = std::min({range.nu_min, t.nu_start, t.nu(e)});
+    range.nu_max = std::max({range.nu_max, t.nu_start, t.nu(e)});
+    range.eps_dev_max = std::max(range.eps_dev_max, t.direction.de * e);
+    range.eps_vol_max = std::max(range.eps_vol_max, std::abs(t.direction.dx) * e);
   }
 }
 

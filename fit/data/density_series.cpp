@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/stages/steady_state.hpp"
+#include "fit/data/shear_rows.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::fit {
 namespace {
-
-constexpr double kUnjammedPressure = 1e-5;  // P* of x = ln(nu/nu_c) = 4e-5 by Eq. (14)
 
 void require(const TestRecord& test, std::size_t row, double value, const char* column) {
   if (!std::isfinite(value)) {
@@ -43,8 +41,6 @@ DensityPoint mean(const std::vector<DensityPoint>& points) {
 }
 
 }  // namespace
-
-bool is_jammed(const Observation& row) { return row.P_star > kUnjammedPressure; }
 
 std::vector<DensitySeries> unloading_series(const std::vector<const TestRecord*>& tests, const DataSet& data,
                                             const CalibrationOptions& options) {

@@ -39,9 +39,6 @@ std::vector<DensitySeries> isotropic_series(const DataSet& data, const Calibrati
 /// test is steady if that is later. Tests that end before, or are not jammed there, are absent.
 std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const CalibrationOptions& options);
 
-/// A row without a network that carries: contacts may exist, P* is below what any jammed state here has.
-bool is_jammed(const Observation& row);
-
 /// Smallest volume fraction of all points.
 double least_nu(const std::vector<DensitySeries>& series);
 

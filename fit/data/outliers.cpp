@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "fit/data/density_series.hpp"
+#include "fit/data/shear_rows.hpp"
 #include "model/evolution.hpp"
 
 namespace grainlaw::fit {

@@ -1,8 +1,7 @@
 #pragma once
 // How far runs of one path on different packings lie apart, row by row: what a single run adds to the error of a mean curve.
-//   variance of a path = mean over rows of sum_i (x_i - mean)^2/(G - 1),   G its runs; the paths' variances are averaged
-// for s_par, F_par and dP*/B*, the volumetric strain that P* is off by: packings differ in their jamming density, and near
-// it that changes P* by more of its value than farther away. B* of ISO unloading at the row's nu.
+// Of s_par, F_par and dP*/B*, the volumetric strain that P* is off by: packings differ in their jamming density, and near it
+// that changes P* by more of its value than farther away. Formula: docs/theory/fit.md, section Scatter of runs.
 
 #include "fit/data/data_set.hpp"
 #include "model/calibrated_law.hpp"

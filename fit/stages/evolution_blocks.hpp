@@ -6,7 +6,7 @@
 //   F   fabric
 // The deviators along the directions of the test's own segments (s_par, F_par; one component on co-axial paths): what
 // stands across them is the noise of a finite packing, and no parameter moves it.
-// Weights: shear_window.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
+// Weights: shear_window() of data/shear_rows.hpp, in units of the scales in CalibrationOptions; each test and quantity counts the same.
 
 #include "fit/data/options.hpp"
 #include "fit/stages/trajectory.hpp"

@@ -7,10 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/data/density_series.hpp"
-#include "fit/stages/measured_state.hpp"
 #include "fit/data/shear_rows.hpp"
-#include "fit/stages/steady_state.hpp"
 #include "model/reduced_law.hpp"
 
 namespace grainlaw::fit {

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "fit/data/density_series.hpp"
-#include "fit/stages/measured_state.hpp"
 #include "fit/data/shear_rows.hpp"
 #include "model/vocabulary/error.hpp"
 
