@@ -64,9 +64,8 @@ StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibra
   return memory_stage(trajectories, options);
 }
 
-void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibration) {
-  ValidRange& range = calibration.law.range;
-  range.nu_min = 1;
+ValidRange range_of(const std::vector<Trajectory>& trajectories) {
+  ValidRange range{1, 0, 0, 0};
   for (const Trajectory& t : trajectories) {
     if (t.rows.empty()) continue;
     const double e = t.rows.back().e;
@@ -75,6 +74,7 @@ void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibr
     range.eps_dev_max = std::max(range.eps_dev_max, t.direction.de * e);
     range.eps_vol_max = std::max(range.eps_vol_max, std::abs(t.direction.dx) * e);
   }
+  return range;
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
   calibration.law.covariance = calibration.errors.covariance();
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
-  set_ranges(trajectories, calibration);
+  calibration.law.range = range_of(trajectories);
   calibration.law.converged = all_converged(calibration);
   return calibration;
 }

@@ -7,17 +7,17 @@
 #include <iterator>
 
 #include "app/commands/calibrate_target.hpp"
-#include "fit/calibration_file.hpp"
-#include "fit/published/verdicts.hpp"
 #include "app/report/report.hpp"
-#include "model/parameters_file.hpp"
 #include "dem/runs/dataset_runs.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "fit/calibrate.hpp"
+#include "fit/calibration_file.hpp"
 #include "fit/leave_one_out.hpp"
+#include "fit/published/verdicts.hpp"
 #include "model/files/adopted_dataset.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output_folder.hpp"
+#include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -110,16 +110,16 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOpti
     calibration.left_out =
         fit::leave_one_out(tests, options, session.watch.control(0, "fit without one packing", session.stop));
   }
-  ModeComparison modes;
+  fit::ModeComparison modes;
   modes.descriptions = fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c,
                                      options, session.watch.control(0, "fit of the other modes", session.stop));
-  modes.verdicts = verdicts_of(calibration.law, modes.descriptions, dataset.seeds.size());
+  modes.verdicts = fit::verdicts_of(calibration.law, modes.descriptions, dataset.seeds.size());
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
-  modes.claims = claims_of(shown, calibration.law, modes.descriptions, options.steady_from);
+  modes.claims = fit::claims_of(shown, calibration.law, modes.descriptions, options.steady_from);
   session.watch.end();
   const OrderedJson origin = provenance(session);
-  write_calibration(output / "calibration.json", calibration, options, modes, origin);
+  fit::write_calibration(output / "calibration.json", calibration, options, modes, origin);
   write_parameters(output / "parameters.json", {calibration.law, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {
     if (!stage.converged)
