@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "chain/studies/settings_study.hpp"
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/study_dataset.hpp"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::chain {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::fit {
