@@ -4,18 +4,17 @@
 
 #include <filesystem>
 
-#include "fit/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
+#include "fit/published/verdicts.hpp"
 #include "model/files/json_document.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 
-void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
-                       const fit::CalibrationOptions& options, const ModeComparison& modes,
-                       const OrderedJson& provenance);
+void write_calibration(const std::filesystem::path& file, const Calibration& calibration,
+                       const CalibrationOptions& options, const ModeComparison& modes, const OrderedJson& provenance);
 
 /// Reads stages and shear fits into `calibration`; of the descriptions, too, only these. Throws InvalidInput naming file
 /// and key.
-ModeComparison read_calibration(const std::filesystem::path& file, fit::Calibration& calibration);
+ModeComparison read_calibration(const std::filesystem::path& file, Calibration& calibration);
 
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

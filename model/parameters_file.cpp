@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
-#include "model/estimate_json.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
@@ -41,6 +41,12 @@ PackingScatter scatter_from_json(const Json& object) {
 
 constexpr int kVersion = 4;
 
+/// Of files without the key, older ones: infinite, as if errors were exact.
+double degrees_of_freedom(const Json& object) {
+  if (object.contains("degrees_of_freedom")) return number_or_nan(object["degrees_of_freedom"]);
+  return object.at("standard_error").is_null() ? std::nan("") : std::numeric_limits<double>::infinity();
+}
+
 /// Whether a parameter is of the memory rung of an earlier program, which was another law (docs/decisions/0005-memory-law.md).
 bool of_earlier_memory(const Json& document, const std::string& name) {
   return document["format_version"] < kVersion && name.starts_with("memory.");
@@ -63,6 +69,29 @@ void read_covariance(const Json& document, Eigen::MatrixXd& covariance) {
 }
 
 }  // namespace
+
+OrderedJson estimate_to_json(const Estimate& estimate) {
+  const bool has_value = estimate.status != Status::not_identified;
+  OrderedJson object;
+  object["value"] = has_value ? number_or_null(estimate.value) : OrderedJson(nullptr);
+  object["standard_error"] = has_value ? number_or_null(estimate.standard_error) : OrderedJson(nullptr);
+  object["degrees_of_freedom"] = has_value ? number_or_null(estimate.degrees_of_freedom) : OrderedJson(nullptr);
+  const double half = has_value ? estimate.half_width() : std::nan("");
+  if (std::isfinite(half)) object["interval_95"] = {estimate.value - half, estimate.value + half};
+  object["status"] = to_string(estimate.status);
+  if (!estimate.note.empty()) object["note"] = estimate.note;
+  return object;
+}
+
+Estimate estimate_from_json(const Json& object) {
+  Estimate estimate{number_or_nan(object.at("value")), number_or_nan(object.at("standard_error")),
+                    status_of(object.at("status")), object.value("note", ""), degrees_of_freedom(object)};
+  if ((estimate.status == Status::not_identified) != std::isnan(estimate.value)) {
+    throw InvalidInput(
+        fmt::format("value: must be null exactly when the status is '{}'", to_string(Status::not_identified)));
+  }
+  return estimate;
+}
 
 void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters) {
   const CalibratedLaw& law = parameters.law;

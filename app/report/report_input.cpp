@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "fit/calibration_file.hpp"
-#include "model/parameters_file.hpp"
 #include "model/files/digest.hpp"
+#include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app::report {
@@ -84,7 +84,7 @@ ReportInput read_report_input(const fs::path& dir) {
   ReportInput input;
   ParametersFile parameters = with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); });
   input.calibration.law = parameters.law;
-  with_remedy(calibrate, [&] { input.modes = read_calibration(dir / "calibration.json", input.calibration); });
+  with_remedy(calibrate, [&] { input.modes = fit::read_calibration(dir / "calibration.json", input.calibration); });
   add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.law.dataset_digest,
               input);
   add_facts(parameters.provenance, "", "parameters.json", input.provenance);

@@ -14,11 +14,11 @@ Table parameter_comparison(const CalibratedLaw& law);
 enum class CurveGroup { law, steady_state };
 Table curve_comparison(const CalibratedLaw& law, CurveGroup which);
 /// Every verdict on a parameter, or on a curve, mode by mode.
-Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters);
+Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameters);
 /// What the paper says beyond Tables 2 and 3.
-Table claim_table(const std::vector<Claim>& claims);
+Table claim_table(const std::vector<fit::Claim>& claims);
 /// nu_c of the modes, both ways.
-Table jamming_table(const std::vector<Verdict>& verdicts);
+Table jamming_table(const std::vector<fit::Verdict>& verdicts);
 /// Stages of the fit: window, sizes, costs, termination.
 Table stage_table(const fit::Calibration& calibration);
 /// Misfit of the coupled fit per test and quantity.

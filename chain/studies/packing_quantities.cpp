@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "dem/runs/spec_file.hpp"
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::chain {
 namespace {
 
-constexpr double kLeastPackings = 2;
+constexpr double kFewestShowing = 2;
 
 struct OnePacking {
   std::vector<std::string> names;
@@ -49,13 +49,13 @@ OnePacking quantities_of(const Dataset& dataset, std::uint64_t seed) {
   return result;
 }
 
-/// Mean of the packings that show it; not shown by fewer than kLeastPackings.
+/// Mean of the packings that show it; not shown by fewer than kFewestShowing.
 StudyQuantity mean_of(const std::string& name, const Eigen::RowVectorXd& x) {
   const Eigen::Array<bool, 1, Eigen::Dynamic> shown = x.array().isFinite();
   const auto n = static_cast<double>(shown.count());
   StudyQuantity quantity{name, Eigen::VectorXd::Constant(1, kMissing), Eigen::MatrixXd::Zero(1, x.size()),
                          name != "nu_c"};
-  if (n < kLeastPackings) return quantity;
+  if (n < kFewestShowing) return quantity;
   const Eigen::RowVectorXd counted = shown.select(x.array(), 0.0).matrix();
   quantity.values(0) = counted.sum() / n;
   quantity.influence = shown.select((x.array() - quantity.values(0)) / std::sqrt(n * (n - 1)), 0.0).matrix();

@@ -8,7 +8,7 @@
 #include "fit/statistics/curve_error.hpp"
 #include "model/student.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 namespace {
 
 constexpr std::array kDensities{0.68, 0.70, 0.74, 0.80, 0.82};
@@ -33,8 +33,8 @@ void judge(Verdict& v, bool known, std::size_t packings) {
 }
 
 /// `mode` of the laws on an unloading branch and `shear` of those in shear; empty: left out.
-void add(const CalibratedLaw& law, const std::string& mode, const std::string& shear, std::size_t packings,
-         std::vector<Verdict>& all) {
+void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::string& shear, std::size_t packings,
+                  std::vector<Verdict>& all) {
   const auto mode_of = [&](std::string_view group) { return of_shear(group) ? shear : mode; };
   const LawParameters<double> published = published_parameters(mode.empty() ? shear : mode);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
@@ -59,7 +59,7 @@ void add(const CalibratedLaw& law, const std::string& mode, const std::string& s
                 false,
                 nu,
                 curve.of(law.parameters, nu),
-                fit::standard_error(law, curve, nu),
+                standard_error(law, curve, nu),
                 curve.of(published, nu),
                 0,
                 ""};
@@ -71,15 +71,15 @@ void add(const CalibratedLaw& law, const std::string& mode, const std::string& s
 
 }  // namespace
 
-std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<fit::Description>& descriptions,
+std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions,
                                  std::size_t packings) {
   std::vector<Verdict> all;
-  add(law, "ISO", "D2", packings, all);
-  for (const fit::Description& d : descriptions) {
+  add_verdicts(law, "ISO", "D2", packings, all);
+  for (const Description& d : descriptions) {
     const bool unloading = d.name == "UNI";
-    add(d.calibration.law, unloading ? d.name : "", unloading ? "" : d.name, packings, all);
+    add_verdicts(d.calibration.law, unloading ? d.name : "", unloading ? "" : d.name, packings, all);
   }
   return all;
 }
 
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

@@ -8,13 +8,13 @@
 #include <fstream>
 #include <sstream>
 
-#include "fit/calibration_file.hpp"
 #include "app/report/dem_series.hpp"
 #include "app/report/report_input.hpp"
-#include "model/parameters_file.hpp"
+#include "fit/calibration_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output_folder.hpp"
 #include "model/files/series_csv.hpp"
+#include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/report_scene.hpp"
 #include "tests/support/well_formed.hpp"
@@ -48,7 +48,7 @@ class ReportFolder : public ::testing::Test {
     scene.calibration.law.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
     scene.calibration.law.dataset_digest = dataset.digest;
     write_parameters(dir_ / "parameters.json", {scene.calibration.law, Json{{"version", "0.1.0"}}});
-    write_calibration(dir_ / "calibration.json", scene.calibration, {}, {}, {{"version", "0.1.0"}});
+    fit::write_calibration(dir_ / "calibration.json", scene.calibration, {}, {}, {{"version", "0.1.0"}});
     for (predict::PredictionFolder& prediction : scene.predictions) {
       const fs::path folder = dir_ / "predictions" / prediction.name;
       prediction.dem = write_tests(folder / "dem", report::dem_records(prediction));

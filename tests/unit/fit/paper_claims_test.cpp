@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 #include "model/student.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 namespace {
 
 constexpr double kSteadyFrom = 0.15;
@@ -99,7 +99,7 @@ TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
     tests.push_back(shear(Mode::D2, Branch::loading, seed, c + 0.01 + j, c + 0.2 + j, 0.020, 0.018, 0.17, 0.13));
     tests.push_back(shear(Mode::D3, Branch::unloading, seed, c, c + 0.2, 0.016, 0.018, 0.17 + j, 0.12 + j));
   }
-  const std::vector<Claim> claims = claims_of(tests, fit::nothing_known(), {}, kSteadyFrom);
+  const std::vector<Claim> claims = claims_of(tests, nothing_known().law, {}, kSteadyFrom);
   const Claim& before = find(claims, "C* before shear: loading branch above unloading branch");
   EXPECT_NEAR(before.ours, 0.010075, 1e-9);
   EXPECT_EQ(before.verdict, "agrees");
@@ -117,15 +117,15 @@ TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
 }
 
 TEST(PaperClaims, JammingDensitiesAreOrdered) {
-  fit::Calibration c = fit::nothing_known();
+  Calibration c = nothing_known();
   c.law.parameters = published_parameters("ISO");
   c.law.parameters.anisotropy.a2 = 1.18;
   c.law.range.nu_min = 0.68;
   c.law.range.nu_max = 0.82;
-  fit::Description uni{"UNI", fit::nothing_known()}, d3{"D3", fit::nothing_known()};
+  Description uni{"UNI", nothing_known()}, d3{"D3", nothing_known()};
   uni.calibration.law.parameters = published_parameters("UNI");
   d3.calibration.law.parameters = published_parameters("D3");
-  const auto know = [](fit::Calibration& calibration, double error) {
+  const auto know = [](Calibration& calibration, double error) {
     for (std::size_t i = 0; i < kParameterCount; ++i) {
       calibration.law.estimates[i] = {*fields(calibration.law.parameters)[i], error, Status::fitted, ""};
       calibration.law.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = error * error;
@@ -152,4 +152,4 @@ TEST(PaperClaims, JammingDensitiesAreOrdered) {
 }
 
 }  // namespace
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 #include "model/student.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 namespace {
 
 /// The published laws of `mode`, the parameters of `groups` with errors of 1 %.
-fit::Calibration published(const std::string& mode, const std::vector<std::string>& groups) {
-  fit::Calibration c = fit::nothing_known();
+Calibration published(const std::string& mode, const std::vector<std::string>& groups) {
+  Calibration c = nothing_known();
   c.law.parameters = published_parameters(mode);
   c.law.range.nu_min = 0.69;
   c.law.range.nu_max = 0.81;
@@ -38,7 +38,7 @@ TEST(Verdicts, AgreeWithinTheRangeOfStudentsT) {
   const std::size_t packings = 5;
   const double limit = student_95(4) * std::sqrt(6.0);
   for (const double errors : {0.0, 0.99 * limit, -0.99 * limit, 1.01 * limit, -1.01 * limit}) {
-    fit::Calibration c = published("", {"coordination"});
+    Calibration c = published("", {"coordination"});
     const std::size_t i = parameter_index("coordination.C1");
     c.law.estimates[i].value += errors * c.law.estimates[i].standard_error;
     const Verdict v = find(verdicts_of(c.law, {}, packings), "ISO", "coordination.C1");
@@ -48,7 +48,7 @@ TEST(Verdicts, AgreeWithinTheRangeOfStudentsT) {
 }
 
 TEST(Verdicts, SayWhatCannotBeJudged) {
-  fit::Calibration c = published("", {"coordination"});
+  Calibration c = published("", {"coordination"});
   c.law.estimates[parameter_index("coordination.alpha")].standard_error = std::nan("");
   const std::vector<Verdict> all = verdicts_of(c.law, {}, 5);
   EXPECT_EQ(find(all, "ISO", "coordination.alpha").verdict, "no error");
@@ -58,7 +58,7 @@ TEST(Verdicts, SayWhatCannotBeJudged) {
 }
 
 TEST(Verdicts, AParameterOnItsBoundHasNoDistance) {
-  fit::Calibration c = published("", {"coordination"});
+  Calibration c = published("", {"coordination"});
   Estimate& bound = c.law.estimates[parameter_index("coordination.alpha")];
   bound.standard_error = 0;
   bound.value *= 1.5;
@@ -68,7 +68,7 @@ TEST(Verdicts, AParameterOnItsBoundHasNoDistance) {
 }
 
 TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
-  const std::vector<fit::Description> modes{
+  const std::vector<Description> modes{
       {"UNI", published("UNI", {"coordination", "rattlers", "pressure"})},
       {"D3", published("D3", {"steady_coordination", "steady_rattlers", "steady_pressure", "fabric_max"})}};
   const std::vector<Verdict> all =
@@ -90,4 +90,4 @@ TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
 }
 
 }  // namespace
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit
