@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 using predict::Initial;
 
-constexpr int kPointsPerSegment = 200;  // of a curve that no DEM run dictates
+constexpr int kFreePoints = 200;  // of a curve that no DEM run dictates
 
 /// The rung that is asked for, else reduced, evolution, and memory where it is calibrated.
 std::vector<Rung> rungs_of(const PredictionInput& input) {
@@ -68,8 +68,8 @@ struct Law {
   predict::Prediction at_equal_steps(Rung model) const {
     const LawState<double> start = predict::state_from_law(calibrated.parameters, path.nu);
     if (!law_decides(path))
-      return along(model, Initial::law, start, predict::uniform_points(segments, kPointsPerSegment));
-    return predict::predict_by_law(model, calibrated.parameters, calibrated.coupling, path, start, kPointsPerSegment,
+      return along(model, Initial::law, start, predict::uniform_points(segments, kFreePoints));
+    return predict::predict_by_law(model, calibrated.parameters, calibrated.coupling, path, start, kFreePoints,
                                    predict::Tolerances{}, calibrated.range, control);
   }
 };

@@ -13,7 +13,7 @@ struct SimulateOptions {
 };
 
 ExitCode simulate(const SimulateOptions& options, Session& session) {
-  const dem::Simulation simulation = dem::simulate(dem::read_test(options.test), options.output, session);
+  const dem::SimulationResult simulation = dem::simulate(dem::read_test(options.test), options.output, session);
   print_result(session.json ? json_text(simulation.summary) : text_of(simulation, options.output));
   return ExitCode::ok;
 }

@@ -51,7 +51,7 @@ std::string coverage_text(const predict::Comparison& comparison) {
 
 }  // namespace
 
-std::string text_of(const dem::Simulation& simulation, const fs::path& output) {
+std::string text_of(const dem::SimulationResult& simulation, const fs::path& output) {
   const OrderedJson& summary = simulation.summary;
   std::string text = fmt::format("{} spheres, {} rows, end of the {}:\n",
                                  summary.at("packing").at("particles").get<std::int64_t>(), simulation.rows.size(),

@@ -13,7 +13,7 @@
 namespace grainlaw::app {
 
 /// The end of the series, and where everything is.
-std::string text_of(const dem::Simulation& simulation, const std::filesystem::path& output);
+std::string text_of(const dem::SimulationResult& simulation, const std::filesystem::path& output);
 
 /// The report's table, runs, seconds and memory.
 std::string text_of(const chain::CalibrationResult& result, const std::filesystem::path& output,

@@ -113,10 +113,10 @@ TargetCalibration calibrate_for(const PrecisionTarget& target, const dem::Spec& 
   actions.explore = [&](const PredictionError& known) {
     const CostRates rates = cost_rates(last.dataset, pilot_work, last.fit_seconds, execution.threads);
     const fs::path folder = make_subfolder(output, "pilot");
-    const auto coarser = [&](const char* name, const PlanSettings& settings) {
+    const auto coarser = [&](const char* subfolder, const PlanSettings& settings) {
       dem::RunCounts counts;
       return tests_of(
-          simulate_data_set(rounds_of(at(settings)), make_subfolder(folder, name), output, execution, counts),
+          simulate_data_set(rounds_of(at(settings)), make_subfolder(folder, subfolder), output, execution, counts),
           Role::calibration);
     };
     return findings_of(target, {pilot, spec.preparation.drive.strain_rate}, known, tests_of(last.dataset, Role::calibration),

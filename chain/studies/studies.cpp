@@ -135,10 +135,9 @@ SettingsStudy study_fit(const std::filesystem::path& dataset, const std::optiona
       reference.emplace(setting.choice.dataset, outcome, setting.choice.options, densities, path);
     }
   }
-  const SettingsStudy study =
-      study_of("fit", path ? kOfPrediction : kOfLaws, Packings::chosen,
-               {{"dataset_digest", everything.dataset.digest}, {"coupling", to_string(everything.options.coupling)}},
-               outcomes, 0);
+  return study_of("fit", path ? kOfPrediction : kOfLaws, Packings::chosen,
+                  {{"dataset_digest", everything.dataset.digest}, {"coupling", to_string(everything.options.coupling)}},
+                  outcomes, 0);
 }
 
 }  // namespace grainlaw::chain

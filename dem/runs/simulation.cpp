@@ -108,7 +108,7 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
 
 }  // namespace
 
-Simulation simulate(const TestFile& test, const fs::path& output, const Execution& execution) {
+SimulationResult simulate(const TestFile& test, const fs::path& output, const Execution& execution) {
   make_output_folder(output);
   const RunStore store(output, "runs");
   run_jobs_of(test, store, execution);
@@ -119,7 +119,7 @@ Simulation simulate(const TestFile& test, const fs::path& output, const Executio
   const Json record = store.find(key).value();
   std::vector<std::string> files = publish(store, key, record, output);
   const Path path = prepared ? unloading_branch(test.preparation) : test.path;
-  Simulation simulation;
+  SimulationResult simulation;
   simulation.rows =
       read_series(output / (prepared ? "unloading.csv" : "series.csv"), path, packing_from_record(record));
   simulation.warnings = record.at("warnings").get<std::vector<std::string>>();

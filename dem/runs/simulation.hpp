@@ -11,7 +11,7 @@
 
 namespace grainlaw::dem {
 
-struct Simulation {
+struct SimulationResult {
   std::vector<Observation> rows;      ///< the series; of a preparation that of its unloading branch
   std::vector<std::string> warnings;  ///< of the run
   OrderedJson summary;                ///< what simulation.json holds
@@ -19,6 +19,6 @@ struct Simulation {
 
 /// Runs `test` unless `output`/runs has it, and copies its series and states to `output`, with simulation.json and, of a
 /// test, end.csv. Throws what the engine throws; Interrupted leaves a checkpoint that the next call goes on from.
-Simulation simulate(const TestFile& test, const std::filesystem::path& output, const Execution& execution);
+SimulationResult simulate(const TestFile& test, const std::filesystem::path& output, const Execution& execution);
 
 }  // namespace grainlaw::dem

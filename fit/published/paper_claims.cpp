@@ -109,13 +109,13 @@ bool compresses_z(const TestRecord& test, Mode mode) {
 }
 
 void add_kinematics(const std::vector<TestRecord>& tests, Claims& claims) {
-  struct Row {
+  struct ModeOfTable {
     Mode mode;
     double rate, shape, lode;
   };
   // Table 1
-  for (const Row& row :
-       {Row{Mode::UNI, 1, 1, 60}, Row{Mode::D2, std::numbers::sqrt3, 0, 30}, Row{Mode::D3, 1.5, 1, 60}}) {
+  for (const ModeOfTable& row :
+       {ModeOfTable{Mode::UNI, 1, 1, 60}, ModeOfTable{Mode::D2, std::numbers::sqrt3, 0, 30}, ModeOfTable{Mode::D3, 1.5, 1, 60}}) {
     std::vector<double> rate, shape, lode;
     for (const TestRecord& test : tests) {
       if (!compresses_z(test, row.mode)) continue;
