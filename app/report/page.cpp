@@ -68,13 +68,13 @@ std::string file_list(const std::vector<std::string>& files) {
 }
 
 /// `characters` of its text; 0 in a heading.
-const char* cell_class(TableColumn::Content content, std::size_t characters) {
+const char* cell_class(Content content, std::size_t characters) {
   switch (content) {
-    case TableColumn::Content::words:
+    case Content::words:
       return characters > 30 ? " class=\"long\"" : "";
-    case TableColumn::Content::symbol:
+    case Content::symbol:
       return " class=\"symbol\"";
-    case TableColumn::Content::number:
+    case Content::number:
       return " class=\"number\"";
   }
   return "";
@@ -149,8 +149,9 @@ std::string table_html(const Table& table) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size() && i < table.columns.size(); ++i) {
       const char* const tag = i == 0 ? "th" : "td";
-      html += fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "",
-                          cell_class(table.columns[i].content, character_count(row[i])), to_html(row[i]), tag);
+      html +=
+          fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "",
+                      cell_class(table.columns[i].content, character_count(row[i].text)), to_html(row[i].text), tag);
     }
     html += "</tr>\n";
   }

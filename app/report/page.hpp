@@ -5,21 +5,9 @@
 #include <vector>
 
 #include "app/report/figure.hpp"
+#include "app/report/table.hpp"
 
 namespace grainlaw::app::report {
-
-struct TableColumn {
-  enum class Content { words, symbol, number };  ///< may wrap, may not, aligned to the right
-  Text heading;
-  Content content = Content::number;
-};
-
-struct Table {
-  std::string caption;  ///< one line, above the table
-  std::vector<TableColumn> columns;
-  std::vector<std::vector<Text>> rows;  ///< as many cells as columns
-  std::string source;                   ///< file, may be empty
-};
 
 struct Section {
   std::string id;  ///< letters, digits and '-'
