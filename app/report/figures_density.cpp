@@ -2,7 +2,7 @@
 #include <cmath>
 #include <vector>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/law_curves.hpp"
 #include "model/density_laws.hpp"

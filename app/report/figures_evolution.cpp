@@ -2,7 +2,7 @@
 #include <array>
 #include <string>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/figures.hpp"
 
 namespace grainlaw::app::report {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/law_curves.hpp"
 

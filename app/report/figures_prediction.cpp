@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/figures.hpp"
 
 namespace grainlaw::app::report {

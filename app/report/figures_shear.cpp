@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/law_curves.hpp"
 #include "model/reduced_law.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/number_text.hpp"
 #include "app/report/tables.hpp"

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/tables.hpp"
 
 namespace grainlaw::app::report {

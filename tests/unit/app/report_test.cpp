@@ -13,7 +13,7 @@
 #include "app/files/parameters_file.hpp"
 #include "app/files/series_csv.hpp"
 #include "app/output_folder.hpp"
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/report_input.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/report_scene.hpp"

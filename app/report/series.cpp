@@ -1,4 +1,4 @@
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 
 #include <algorithm>
 #include <array>

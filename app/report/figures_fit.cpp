@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/report/dem_series.hpp"
+#include "app/report/series.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/law_curves.hpp"
 #include "model/evolution.hpp"
