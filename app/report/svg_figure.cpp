@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "app/report/axis.hpp"
-#include "app/report/svg_marks.hpp"
+#include "app/report/svg_series.hpp"
 
 namespace grainlaw::app::report {
 namespace {

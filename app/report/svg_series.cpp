@@ -1,4 +1,4 @@
-#include "app/report/svg_marks.hpp"
+#include "app/report/svg_series.hpp"
 
 #include <fmt/format.h>
 
