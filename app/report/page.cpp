@@ -52,12 +52,6 @@ constexpr const char* kTemplate = R"(<!DOCTYPE html>
 
 using kainjow::mustache::data;
 
-data html_list(const std::vector<std::string>& blocks) {
-  data list{data::type::list};
-  for (const std::string& block : blocks) list << data{"html", block};
-  return list;
-}
-
 std::string file_list(const std::vector<std::string>& files) {
   std::string html;
   for (const std::string& file : files) {
@@ -132,11 +126,22 @@ std::string figure_data(const Figure& figure) {
   return safe;
 }
 
-}  // namespace
+std::string html_of(const Paragraph& paragraph) { return "<p>" + to_html(paragraph.text) + "</p>"; }
 
-std::string paragraph_html(const Text& text) { return "<p>" + to_html(text) + "</p>"; }
+std::string html_of(const Warning& warning) {
+  std::string html = "<p class=\"warning\">" + to_html(plain(warning.text));
+  if (!warning.section.empty())
+    html += "<a href=\"#" + warning.section + "\">" + to_html(plain(warning.link)) + "</a>.";
+  return html + "</p>";
+}
 
-std::string table_html(const Table& table) {
+std::string html_of(const Items& items) {
+  std::string html = "<ul>\n";
+  for (const std::string& line : items.lines) html += "<li>" + to_html(plain(line)) + "</li>\n";
+  return html + "</ul>";
+}
+
+std::string html_of(const Table& table) {
   std::string html = "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" +
                      to_html(plain(table.caption)) + "\">\n<table>\n<caption>" + to_html(plain(table.caption));
   if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
@@ -158,7 +163,7 @@ std::string table_html(const Table& table) {
   return html + "</tbody>\n</table>\n</div>";
 }
 
-std::string figure_html(const Figure& figure) {
+std::string html_of(const Figure& figure) {
   const RenderedFigure rendered = render_svg(figure);
   std::string html = fmt::format("<figure id=\"{}\">\n<div class=\"scroll\">{}</div>\n<figcaption><b>{}.</b> {}",
                                  figure.id, rendered.svg, to_html(plain(figure.title)), to_html(figure.caption));
@@ -173,6 +178,22 @@ std::string figure_html(const Figure& figure) {
                       figure_data(figure));
   return html;
 }
+
+std::string html_of(const Block& block) {
+  std::string html;
+  for (const BlockContent& content : block.contents)
+    html += std::visit([](const auto& value) { return html_of(value); }, content);
+  if (block.summary.empty()) return html;
+  return "<details>\n<summary>" + to_html(plain(block.summary)) + "</summary>\n" + html + "\n</details>";
+}
+
+data html_list(const std::vector<Block>& blocks) {
+  data list{data::type::list};
+  for (const Block& block : blocks) list << data{"html", html_of(block)};
+  return list;
+}
+
+}  // namespace
 
 std::string page_html(const Page& page) {
   data sections{data::type::list};

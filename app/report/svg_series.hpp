@@ -1,39 +1,38 @@
 #pragma once
-// The ink of one series: symbols, lines and error bars as SVG paths in pixel coordinates.
+// The ink of one series in the frame of its panel: bands, error bars, line and
+// symbols, as SVG.
 
 #include <string>
-#include <vector>
 
+#include "app/report/axis.hpp"
 #include "app/report/figure.hpp"
 
 namespace grainlaw::app::report {
 
-struct PixelPoint {
-  double x = 0, y = 0;
-  double y_low = 0, y_high = 0;  ///< ends of the error bar, or edges of the band; equal when there is none
-};
-
 /// A length with two decimals at most, e.g. "12.5".
 std::string pixels(double value);
 
-/// CSS class of a colour: "k0" ... "k7".
-std::string colour_class(Colour colour);
+/// Axes and their place in the figure [px], without labels.
+struct Frame {
+  Axis x, y;
+  double left = 0, top = 0, width = 0, height = 0;
 
-/// Path data of a symbol of half width `size` around each point.
-std::string marker_path(Marker marker, double size, const std::vector<PixelPoint>& points);
+  /// Position of a value [px]; far outside is as good as just outside, and
+  /// keeps the numbers in the file small.
+  double px(double value) const;
+  double py(double value) const;
+};
 
-/// Attributes of a symbol's path: filled, or outline for open symbols and crosses.
-std::string marker_attributes(Marker marker, bool open);
+/// Points that are not seen.
+struct Unseen {
+  int undefined = 0;  ///< x or y is not finite (or not positive on a logarithmic axis)
+  int outside = 0;    ///< symbols beyond the frame
+};
 
-/// Path data through runs of points; a new run starts after each undefined point.
-std::string line_path(const std::vector<std::vector<PixelPoint>>& runs);
+/// The series as a <g> element; what is not seen of it is added to `unseen`.
+std::string series_svg(const Series& series, const Frame& frame, Unseen& unseen);
 
-std::string line_attributes(Line line, double width);
-
-/// Path data of the areas between y_low and y_high along runs of points.
-std::string band_path(const std::vector<std::vector<PixelPoint>>& runs);
-
-/// Path data of the error bars, with caps; empty when there are none.
-std::string error_bar_path(const std::vector<PixelPoint>& points);
+/// Its key in a legend, 24 px wide from `x` on.
+std::string legend_key(const Series& series, double x, double y);
 
 }  // namespace grainlaw::app::report

@@ -1,7 +1,7 @@
 #include "app/study/study_output.hpp"
 
 #include "app/provenance.hpp"
-#include "app/report/svg_file.hpp"
+#include "app/report/svg_figure.hpp"
 
 namespace grainlaw::app {
 

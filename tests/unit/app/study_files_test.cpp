@@ -7,7 +7,6 @@
 
 #include "app/files/schema.hpp"
 #include "app/report/svg_figure.hpp"
-#include "app/report/svg_file.hpp"
 #include "app/study/figure_study.hpp"
 #include "app/study/study_json.hpp"
 #include "app/study/study_table.hpp"
