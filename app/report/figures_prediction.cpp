@@ -9,7 +9,7 @@
 namespace grainlaw::app::report {
 namespace {
 
-using predict::PredictedRow;
+using predict::Initial, predict::PredictedCurve, predict::PredictedRow, predict::PredictionFolder;
 
 struct Predicted {
   const char* label;
@@ -138,7 +138,7 @@ Panel difference_panel(const Shown& shown, const Predicted& quantity) {
 
 }  // namespace
 
-Figure prediction_figure(const PredictionFolder& prediction, std::size_t index) {
+Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_t index) {
   const Shown shown = shown_of(prediction);
   const bool compared = !shown.dem.empty();
   std::vector<Panel> panels;

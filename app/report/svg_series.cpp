@@ -16,7 +16,7 @@ struct PixelPoint {
   double y_low = 0, y_high = 0;  ///< ends of the error bar, or edges of the
                                  ///< band; equal when there is none
 };
-using Run = std::vector<PixelPoint>;  // points without an undefined one between them
+using Stretch = std::vector<PixelPoint>;  // points without an undefined one between them
 
 std::string colour_class(Colour colour) { return "k" + std::to_string(static_cast<int>(colour)); }
 
@@ -75,13 +75,13 @@ std::string marker_svg(const Series& series, double size, const std::vector<Pixe
                                   : R"( fill="currentColor" stroke="none")");
 }
 
-std::string line_svg(const Series& series, const std::vector<Run>& runs) {
+std::string line_svg(const Series& series, const std::vector<Stretch>& stretches) {
   if (series.line == Line::none) return "";
   std::string path;
-  for (const Run& run : runs) {
-    if (run.size() < 2) continue;
-    for (std::size_t i = 0; i < run.size(); ++i)
-      path += fmt::format("{}{} {}", i == 0 ? "M" : "L", pixels(run[i].x), pixels(run[i].y));
+  for (const Stretch& stretch : stretches) {
+    if (stretch.size() < 2) continue;
+    for (std::size_t i = 0; i < stretch.size(); ++i)
+      path += fmt::format("{}{} {}", i == 0 ? "M" : "L", pixels(stretch[i].x), pixels(stretch[i].y));
   }
   const char* const dashes = series.line == Line::dashed   ? R"( stroke-dasharray="7 4")"
                              : series.line == Line::dotted ? R"( stroke-dasharray="1.5 3.5" stroke-linecap="round")"
@@ -100,32 +100,33 @@ std::string error_bar_svg(const std::vector<PixelPoint>& points) {
   return path.empty() ? "" : fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"currentColor\"/>", path);
 }
 
-/// Points by point(i), an undefined one ends a run.
+/// Points by point(i), an undefined one ends a stretch.
 template <class Point>
-std::vector<Run> runs_of(const Series& series, const Point& point) {
-  std::vector<Run> runs(1);
+std::vector<Stretch> stretches_of(const Series& series, const Point& point) {
+  std::vector<Stretch> stretches(1);
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (const std::optional<PixelPoint> p = point(i)) {
-      runs.back().push_back(*p);
-    } else if (!runs.back().empty()) {
-      runs.emplace_back();
+      stretches.back().push_back(*p);
+    } else if (!stretches.back().empty()) {
+      stretches.emplace_back();
     }
   }
-  return runs;
+  return stretches;
 }
 
 std::string band_svg(const Series& series, const std::vector<double>& half_width, const Frame& frame) {
-  const auto runs = runs_of(series, [&](std::size_t i) -> std::optional<PixelPoint> {
+  const auto stretches = stretches_of(series, [&](std::size_t i) -> std::optional<PixelPoint> {
     const double x = series.x[i], low = series.y[i] - half_width[i], high = series.y[i] + half_width[i];
     if (!frame.x.defined_at(x) || !frame.y.defined_at(low) || !frame.y.defined_at(high)) return std::nullopt;
     return PixelPoint{frame.px(x), frame.py(series.y[i]), frame.py(low), frame.py(high)};
   });
   std::string path;
-  for (const Run& run : runs) {
-    if (run.size() < 2) continue;
-    for (std::size_t i = 0; i < run.size(); ++i)
-      path += fmt::format("{}{} {}", i == 0 ? "M" : "L", pixels(run[i].x), pixels(run[i].y_low));
-    for (std::size_t i = run.size(); i-- > 0;) path += fmt::format("L{} {}", pixels(run[i].x), pixels(run[i].y_high));
+  for (const Stretch& stretch : stretches) {
+    if (stretch.size() < 2) continue;
+    for (std::size_t i = 0; i < stretch.size(); ++i)
+      path += fmt::format("{}{} {}", i == 0 ? "M" : "L", pixels(stretch[i].x), pixels(stretch[i].y_low));
+    for (std::size_t i = stretch.size(); i-- > 0;)
+      path += fmt::format("L{} {}", pixels(stretch[i].x), pixels(stretch[i].y_high));
     path += "z";
   }
   if (path.empty()) return path;
@@ -156,7 +157,7 @@ double Frame::py(double value) const { return top + (1 - near(y.fraction(value))
 
 std::string series_svg(const Series& series, const Frame& frame, Unseen& unseen) {
   std::vector<PixelPoint> within;
-  const auto runs = runs_of(series, [&](std::size_t i) -> std::optional<PixelPoint> {
+  const auto stretches = stretches_of(series, [&](std::size_t i) -> std::optional<PixelPoint> {
     const double x = series.x[i], y = series.y[i];
     if (!frame.x.defined_at(x) || !frame.y.defined_at(y)) {
       ++unseen.undefined;
@@ -176,7 +177,7 @@ std::string series_svg(const Series& series, const Frame& frame, Unseen& unseen)
   });
   std::string out;
   for (const std::vector<double>& band : series.bands) out += band_svg(series, band, frame);
-  out += error_bar_svg(within) + line_svg(series, runs) + marker_svg(series, series.marker_size, within);
+  out += error_bar_svg(within) + line_svg(series, stretches) + marker_svg(series, series.marker_size, within);
   return fmt::format("<g class=\"{}\"><title>{}</title>{}</g>\n", colour_class(series.colour),
                      escape_markup(to_plain(series.label)), out);
 }

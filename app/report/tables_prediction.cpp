@@ -8,6 +8,7 @@ namespace grainlaw::app::report {
 namespace {
 
 using enum Content;
+using predict::CurveComparison, predict::PredictionFolder;
 
 Cell seed_or(const std::optional<std::uint64_t>& seed, const char* words) { return seed ? Cell(*seed) : Cell(words); }
 

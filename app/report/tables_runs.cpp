@@ -93,7 +93,7 @@ Table run_table(const ReportInput& input) {
 
 Table cost_table(const ReportInput& input) {
   std::vector<RunSum> sums{sum_of("dataset/", runs_of(input))};
-  for (const PredictionFolder& prediction : input.predictions) {
+  for (const predict::PredictionFolder& prediction : input.predictions) {
     if (!prediction.dem) continue;
     std::vector<Run> runs;
     for (const DatasetTest& test : prediction.dem->tests) runs.push_back({test.record, test.cost});
