@@ -63,15 +63,8 @@ std::string file_list(const std::vector<std::string>& files) {
 
 /// `characters` of its text; 0 in a heading.
 const char* cell_class(Content content, std::size_t characters) {
-  switch (content) {
-    case Content::words:
-      return characters > 30 ? " class=\"long\"" : "";
-    case Content::symbol:
-      return " class=\"symbol\"";
-    case Content::number:
-      return " class=\"number\"";
-  }
-  return "";
+  if (content == Content::words) return characters > 30 ? " class=\"long\"" : "";
+  return content == Content::symbol ? " class=\"symbol\"" : " class=\"number\"";
 }
 
 /// JSON has no NaN: what is undefined becomes null.
@@ -108,21 +101,8 @@ std::string figure_data(const Figure& figure) {
     document["panels"].push_back(entry);
   }
   std::string safe;
-  for (const char c : document.dump(-1, ' ', /*ensure_ascii=*/true)) {
-    switch (c) {
-      case '<':
-        safe += "\\u003c";
-        break;
-      case '>':
-        safe += "\\u003e";
-        break;
-      case '&':
-        safe += "\\u0026";
-        break;
-      default:
-        safe += c;
-    }
-  }
+  for (const char c : document.dump(-1, ' ', /*ensure_ascii=*/true))
+    safe += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", static_cast<int>(c)) : std::string(1, c);
   return safe;
 }
 
