@@ -111,25 +111,6 @@ Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quan
   return panel;
 }
 
-/// A residual of the coupled fit and the test that it is of.
-struct Misfit {
-  const fit::TestResidual& residual;
-  const TestRecord& test;
-};
-
-std::vector<Misfit> misfits_of(const ReportInput& input) {
-  std::vector<Misfit> misfits;
-  for (const fit::Stage& stage : input.calibration.stages) {
-    if (stage.name != "evolution") continue;
-    for (const fit::TestResidual& residual : stage.tests) {
-      for (const TestRecord& test : input.tests) {
-        if (test.name == residual.test) misfits.push_back({residual, test});
-      }
-    }
-  }
-  return misfits;
-}
-
 }  // namespace
 
 Figure shear_law_figure(const ReportInput& input) {
@@ -153,7 +134,7 @@ Figure shear_law_figure(const ReportInput& input) {
 }
 
 Figure residual_figure(const ReportInput& input) {
-  const std::vector<Misfit> misfits = misfits_of(input);
+  const std::vector<Misfit> misfits = coupled_misfits(input);
   std::vector<std::string> kinds;
   for (const TestRecord& test : input.tests) {
     const std::string kind = kind_of(test.path);

@@ -58,16 +58,11 @@ std::vector<Block> lead(const ReportInput& input) {
 
 /// The largest pressure misfit among the constant-volume tests of the coupled fit, in words.
 std::string dilatancy_gap(const ReportInput& input) {
+  const auto relative = [](const fit::TestResidual& r) { return std::abs(r.bias) / r.max_abs_data; };
   const fit::TestResidual* worst = nullptr;
-  for (const fit::Stage& stage : input.calibration.stages) {
-    if (stage.name != "evolution") continue;
-    for (const fit::TestResidual& residual : stage.tests) {
-      const auto test = std::find_if(input.tests.begin(), input.tests.end(),
-                                     [&](const TestRecord& t) { return t.name == residual.test; });
-      if (residual.quantity != "P_star" || test == input.tests.end() || !is_pure_shear(*test)) continue;
-      const auto relative = [](const fit::TestResidual& r) { return std::abs(r.bias) / r.max_abs_data; };
-      if (worst == nullptr || relative(residual) > relative(*worst)) worst = &residual;
-    }
+  for (const auto& [residual, test] : coupled_misfits(input)) {
+    if (residual.quantity != "P_star" || !is_pure_shear(test)) continue;
+    if (worst == nullptr || relative(residual) > relative(*worst)) worst = &residual;
   }
   if (worst == nullptr) return "No constant-volume test entered the coupled fit.";
   return fmt::format(

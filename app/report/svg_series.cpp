@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -20,17 +21,22 @@ using Stretch = std::vector<PixelPoint>;  // points without an undefined one bet
 
 std::string colour_class(Colour colour) { return "k" + std::to_string(static_cast<int>(colour)); }
 
-/// Five points on a circle of `radius`, five between them where the edges of a
-/// pentagram meet.
+/// Path data of straight lines from point to point.
+std::string polyline(const std::vector<std::array<double, 2>>& points) {
+  std::string path;
+  for (const auto& [x, y] : points) path += fmt::format("{}{} {}", path.empty() ? "M" : "L", pixels(x), pixels(y));
+  return path;
+}
+
+/// Five points on a circle of `radius`, five between them where the edges of a pentagram meet.
 std::string star_path(const PixelPoint& p, double radius) {
   const double inner = radius * std::cos(0.4 * std::numbers::pi) / std::cos(0.2 * std::numbers::pi);
-  std::string path;
+  std::vector<std::array<double, 2>> corners;
   for (int k = 0; k < 10; ++k) {
     const double r = k % 2 == 0 ? radius : inner, angle = 0.2 * std::numbers::pi * k;
-    path += fmt::format("{}{} {}", k == 0 ? "M" : "L", pixels(p.x + r * std::sin(angle)),
-                        pixels(p.y - r * std::cos(angle)));
+    corners.push_back({p.x + r * std::sin(angle), p.y - r * std::cos(angle)});
   }
-  return path + "z";
+  return polyline(corners) + "z";
 }
 
 /// Path data of a symbol of half width `size` around a point.
@@ -80,8 +86,9 @@ std::string line_svg(const Series& series, const std::vector<Stretch>& stretches
   std::string path;
   for (const Stretch& stretch : stretches) {
     if (stretch.size() < 2) continue;
-    for (std::size_t i = 0; i < stretch.size(); ++i)
-      path += fmt::format("{}{} {}", i == 0 ? "M" : "L", pixels(stretch[i].x), pixels(stretch[i].y));
+    std::vector<std::array<double, 2>> points;
+    for (const PixelPoint& p : stretch) points.push_back({p.x, p.y});
+    path += polyline(points);
   }
   const char* const dashes = series.line == Line::dashed   ? R"( stroke-dasharray="7 4")"
                              : series.line == Line::dotted ? R"( stroke-dasharray="1.5 3.5" stroke-linecap="round")"
@@ -123,11 +130,10 @@ std::string band_svg(const Series& series, const std::vector<double>& half_width
   std::string path;
   for (const Stretch& stretch : stretches) {
     if (stretch.size() < 2) continue;
-    for (std::size_t i = 0; i < stretch.size(); ++i)
-      path += fmt::format("{}{} {}", i == 0 ? "M" : "L", pixels(stretch[i].x), pixels(stretch[i].y_low));
-    for (std::size_t i = stretch.size(); i-- > 0;)
-      path += fmt::format("L{} {}", pixels(stretch[i].x), pixels(stretch[i].y_high));
-    path += "z";
+    std::vector<std::array<double, 2>> outline;
+    for (const PixelPoint& p : stretch) outline.push_back({p.x, p.y_low});
+    for (auto p = stretch.rbegin(); p != stretch.rend(); ++p) outline.push_back({p->x, p->y_high});
+    path += polyline(outline) + "z";
   }
   if (path.empty()) return path;
   return fmt::format(

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "app/report/series.hpp"
 #include "app/report/tables.hpp"
-#include "model/density_curves.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -88,25 +88,20 @@ Table parameter_comparison(const fit::Calibration& calibration) {
 }
 
 Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
-  std::vector<double> densities;
+  const LawParameters<double>&ours = calibration.parameters, published = published_parameters();
   std::vector<ColumnOf<double>> columns{{"{ν}", number, [](double nu) { return decimals(nu, 2); }}};
-  std::vector<CurvePoint> points =
-      curve_points(calibration.parameters, published_parameters(), calibration.nu_min, calibration.nu_max);
-  for (const DensityCurve& curve : density_curves()) {
-    if (std::string_view(curve.quantity).starts_with("steady_") != (which == CurveGroup::steady_state)) continue;
-    const bool known = std::all_of(curve.groups.begin(), curve.groups.end(),
-                                   [&](const char* group) { return fit::has_values(calibration, group); });
-    columns.push_back({curve.symbol, number, [&, known](double nu) -> Cell {
+  for (const DensityCurve& law : density_curves()) {
+    if (std::string_view(law.quantity).starts_with("steady_") != (which == CurveGroup::steady_state)) continue;
+    const bool known = is_known(law, calibration);
+    columns.push_back({law.symbol, number, [&, known](double nu) -> Cell {
                          if (!known) return "not identified";
-                         const auto at = std::find_if(points.begin(), points.end(), [&](const CurvePoint& point) {
-                           return point.curve == &curve && point.nu == nu;
-                         });
-                         return {
-                             significant_padded(at->ours, 4) + " (" + percent_difference(at->ours, at->published) + ")",
-                             at->ours};
+                         const double value = law.of(ours, nu);
+                         const std::string difference = percent_difference(value, law.of(published, nu));
+                         return {significant_padded(value, 4) + " (" + difference + ")", value};
                        }});
   }
-  for (const CurvePoint& point : points) {
+  std::vector<double> densities;
+  for (const CurvePoint& point : curve_points(ours, published, calibration.nu_min, calibration.nu_max)) {
     if (point.curve == &density_curves().front()) densities.push_back(point.nu);
   }
   return table_of(which == CurveGroup::law
