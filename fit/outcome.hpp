@@ -1,5 +1,5 @@
 #pragma once
-// What a calibration says: values, errors and their standing, stage by stage. Plain values, nothing of the solver.
+// How a calibration came about: values, errors and misfits, stage by stage. Plain values, nothing of the solver.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -7,31 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "model/calibrated_law.hpp"
 #include "model/vocabulary/path.hpp"
 
 namespace grainlaw::fit {
 
 inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  ///< written as null
-
-enum class Status {
-  fitted,          ///< free in the last stage that it appears in
-  fixed,           ///< not fitted by decision (Eq. (20)'s nu_c)
-  tied,            ///< follows from others by an identity
-  at_bound,        ///< ended on a physical bound; no standard error
-  not_identified,  ///< the data do not contain it; no value and no standard error
-};
-std::string to_string(Status status);
-
-struct Estimate {
-  double value = 0;                    ///< not to be read when not identified
-  double standard_error = kUndefined;  ///< over packings, covariance.hpp; NaN unless fitted or tied
-  Status status = Status::not_identified;
-  std::string note;                        ///< why, e.g. which experiment would identify it; may be empty
-  double degrees_of_freedom = kUndefined;  ///< of the standard error; NaN without one
-
-  /// Half of the 95 % interval, by Student's t; NaN without an error.
-  double half_width() const;
-};
 
 struct NamedEstimate {
   std::string name;  ///< of parameter_table()

@@ -40,10 +40,10 @@ struct Range {
 
 /// From a little below jamming, where the laws begin, to the densest row.
 Range shown_range(const ReportInput& input) {
-  const auto& c = input.calibration;
+  const CalibratedLaw& c = input.calibration.law;
   double from = c.parameters.isotropic.pressure.nu_c;
-  if (fit::has_values(c, "steady_pressure")) from = std::min(from, c.parameters.steady.pressure.nu_c);
-  return {std::min(from, c.nu_max - 0.01), c.nu_max};
+  if (has_values(c, "steady_pressure")) from = std::min(from, c.parameters.steady.pressure.nu_c);
+  return {std::min(from, c.range.nu_max - 0.01), c.range.nu_max};
 }
 
 /// `of` over the range, at the parameters `p`.
@@ -69,12 +69,12 @@ Panel state_panel(const ReportInput& input, const char* label, const std::string
   add_isotropic_symbols(panel, input, "ISO unloading, DEM seed ", measured);
   add_steady_symbols(panel, input, steady_mean);
   const DensityCurve &isotropic = density_curve(quantity), &steady = density_curve("steady_" + quantity);
-  const LawParameters<double>&ours = input.calibration.parameters, published = published_parameters();
+  const LawParameters<double>&ours = input.calibration.law.parameters, published = published_parameters();
   add_law(panel, range, "ISO, published", Colour::ink, Line::dashed, published, isotropic.of);
   add_law(panel, range, "steady D2, published", Colour::purple, Line::dashed, published, steady.of);
-  if (is_known(isotropic, input.calibration))
+  if (is_known(isotropic, input.calibration.law))
     add_law(panel, range, "ISO, fitted", Colour::blue, Line::solid, ours, isotropic.of);
-  if (is_known(steady, input.calibration))
+  if (is_known(steady, input.calibration.law))
     add_law(panel, range, "steady D2, fitted", Colour::vermillion, Line::solid, ours, steady.of);
   return panel;
 }
@@ -87,8 +87,8 @@ Panel unloading_panel(const ReportInput& input, const char* label, const char* s
   Panel panel = density_panel(label, range);
   add_isotropic_symbols(panel, input, symbols_name, measured);
   add_law(panel, range, "published", Colour::ink, Line::dashed, published_parameters(), law);
-  if (fit::has_values(input.calibration, group))
-    add_law(panel, range, "fitted", Colour::blue, Line::solid, input.calibration.parameters, law);
+  if (has_values(input.calibration.law, group))
+    add_law(panel, range, "fitted", Colour::blue, Line::solid, input.calibration.law.parameters, law);
   return panel;
 }
 
@@ -121,7 +121,7 @@ Figure density_figure(const ReportInput& input) {
 
 Figure scaled_density_figure(const ReportInput& input) {
   using P = LawParameters<double>;
-  const double nu_c = input.calibration.parameters.isotropic.pressure.nu_c;
+  const double nu_c = input.calibration.law.parameters.isotropic.pressure.nu_c;
   Panel scaled = unloading_panel(
       input, "{P}* {ν}_{c}/({ν}{C}) [–]", "DEM seed ",
       [=](const Observation& row) { return row.P_star * (nu_c / (row.nu * row.C)); }, "pressure",

@@ -19,7 +19,7 @@ using Law = LawParameters<double>;
 struct ShearQuantity {
   const char* label;
   const char* curve;  ///< in density_curves()
-  fit::Estimate ShearFit::*staged;
+  Estimate ShearFit::*staged;
   double ShearFit::*steady_mean;     ///< null for rates
   double LawModuli<double>::*limit;  ///< null for rates
 };
@@ -36,12 +36,12 @@ constexpr std::array<std::pair<const char*, const char*>, 3> kMisfits{
 
 /// The parameters before the coupled fit: the last value that a stage in front of it gave.
 Law staged_parameters(const fit::Calibration& calibration) {
-  Law staged = calibration.parameters;
+  Law staged = calibration.law.parameters;
   const auto to = fields(staged);
   for (const fit::Stage& stage : calibration.stages) {
     if (stage.name == "evolution") break;
     for (const fit::NamedEstimate& named : stage.estimates) {
-      if (named.estimate.status != fit::Status::not_identified) *to[parameter_index(named.name)] = named.estimate.value;
+      if (named.estimate.status != Status::not_identified) *to[parameter_index(named.name)] = named.estimate.value;
     }
   }
   return staged;
@@ -58,8 +58,8 @@ Series per_run_points(const fit::Calibration& calibration, Mode mode, const Shea
       open_symbols(plain(to_string(mode) + ", DEM (fit per run)"), mode == Mode::D2 ? Colour::blue : Colour::green,
                    mode == Mode::D2 ? Marker::circle : Marker::diamond);
   const auto value = [&](const ShearFit& fit) {
-    const fit::Estimate& estimate = fit.*quantity.staged;
-    return estimate.status == fit::Status::not_identified ? std::numeric_limits<double>::quiet_NaN() : estimate.value;
+    const Estimate& estimate = fit.*quantity.staged;
+    return estimate.status == Status::not_identified ? std::numeric_limits<double>::quiet_NaN() : estimate.value;
   };
   const auto is_of_mode = [=](const ShearFit& fit) { return fit.mode == mode; };
   Series series = through(style, calibration.shear, &ShearFit::nu, value, is_of_mode);
@@ -75,15 +75,15 @@ struct Range20 {
 
 /// Densities of the shear fits; the calibrated range when they are one.
 Range20 sheared_range(const fit::Calibration& calibration) {
-  Range20 range{calibration.nu_max, calibration.nu_min};
+  Range20 range{calibration.law.range.nu_max, calibration.law.range.nu_min};
   for (const ShearFit& shear : calibration.shear)
     range = {std::min(range.from, shear.nu), std::max(range.to, shear.nu)};
-  return range.from < range.to ? range : Range20{calibration.nu_min, calibration.nu_max};
+  return range.from < range.to ? range : Range20{calibration.law.range.nu_min, calibration.law.range.nu_max};
 }
 
 Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quantity) {
   const DensityCurve& law = density_curve(quantity.curve);
-  const bool known = is_known(law, calibration);
+  const bool known = is_known(law, calibration.law);
   Panel panel = panel_of(known ? "" : "Eq. 20 not identified by these tests", kDensityLabel, quantity.label);
   panel.y.include = 0;
   for (const Mode mode : {Mode::D2, Mode::D3}) {
@@ -98,7 +98,7 @@ Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quan
     panel.series.push_back(curve(line_of(plain(name), colour, line), range.from, range.to, of_density));
   };
   const Law published = published_parameters(), staged = staged_parameters(calibration);
-  const Law& coupled = calibration.parameters;
+  const Law& coupled = calibration.law.parameters;
   add("published", Colour::ink, Line::dashed, [&](double nu) { return law.of(published, nu); });
   if (!known) return panel;
   add("Eq. 20, staged", Colour::blue, Line::dotted, [&](double nu) { return law.of(staged, nu); });

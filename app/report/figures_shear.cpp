@@ -20,8 +20,8 @@ struct Saturation {
   const char* equation;
   std::array<const char*, 2> groups;  ///< of parameters that `law` reads
   double Observation::*measured;
-  fit::Estimate fit::ShearFit::*limit;
-  fit::Estimate fit::ShearFit::*rate;
+  Estimate fit::ShearFit::*limit;
+  Estimate fit::ShearFit::*rate;
   double fit::ShearFit::*start;
   double (*law)(const LawParameters<double>&, double nu, double eps_dev);
 };
@@ -72,8 +72,8 @@ void add_run(Panel& panel, const TestRecord& test, const ReportInput& input, con
                                  symbol_rows(test, 70), &Observation::eps_dev, what.measured));
   for (const fit::ShearFit& fit : input.calibration.shear) {
     if (fit.test != test.name) continue;
-    const fit::Estimate &limit = fit.*what.limit, &rate = fit.*what.rate;
-    if (limit.status == fit::Status::not_identified || rate.status == fit::Status::not_identified) return;
+    const Estimate &limit = fit.*what.limit, &rate = fit.*what.rate;
+    if (limit.status == Status::not_identified || rate.status == Status::not_identified) return;
     panel.series.push_back(curve(line_of(plain("fit of seed " + number), colour_of(seed), Line::solid), 0,
                                  largest_strain(test),
                                  [&](double e) { return saturating(limit.value, fit.*what.start, rate.value, e); }));
@@ -89,7 +89,7 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
   const auto keys = panel_keys(tests);
   const auto seeds = seeds_of(input.tests);
   const bool known =
-      fit::has_values(input.calibration, what.groups[0]) && fit::has_values(input.calibration, what.groups[1]);
+      has_values(input.calibration.law, what.groups[0]) && has_values(input.calibration.law, what.groups[1]);
   std::vector<Panel> panels;
   for (const PanelKey& key : keys) {
     Panel& panel = panels.emplace_back(panel_of(panel_title(key, keys).c_str(), kStrainLabel, what.symbol));
@@ -104,7 +104,7 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
       panel.series.push_back(
           curve(line_of(plain(name), Colour::ink, line), 0, end, [&](double e) { return what.law(p, key.nu, e); }));
     };
-    if (known) add_law("law, final parameters", Line::dotted, input.calibration.parameters);
+    if (known) add_law("law, final parameters", Line::dotted, input.calibration.law.parameters);
     add_law("published", Line::dashed, published_parameters());
   }
   return {

@@ -36,9 +36,9 @@ std::vector<Block> lead(const ReportInput& input) {
       "In every figure symbols (or thin lines, where said) are DEM data, solid and dotted lines the law, dashed "
       "lines the published law. Stress is positive in compression, strain in tension; a star means multiplied by "
       "2⟨r⟩/k. Calibrated range: ν = {:.4g} to {:.4g}, deviatoric strain up to {:.3g}.",
-      calibration.nu_min, calibration.nu_max, calibration.eps_dev_max);
+      calibration.law.range.nu_min, calibration.law.range.nu_max, calibration.law.range.eps_dev_max);
   std::vector<Block> blocks{text(subject), text(reading)};
-  if (!calibration.converged) {
+  if (!calibration.law.converged) {
     std::string stages;
     for (const fit::Stage& stage : calibration.stages) {
       if (!stage.converged) stages += (stages.empty() ? "" : ", ") + stage.name;
@@ -109,17 +109,17 @@ Section checks(const fit::Calibration& calibration) {
 
 Page make_page(const ReportInput& input) {
   const auto& calibration = input.calibration;
-  const ModeComparison& modes = input.modes;
+  const fit::ModeComparison& modes = input.modes;
   Page page{"From grains to a constitutive law", lead(input), {}};
   const auto add = [&](const char* id, const char* heading, std::vector<Block> blocks) {
     page.sections.push_back({id, heading, std::move(blocks)});
   };
   add("parameters", "Parameters and curves",
-      {open(parameter_comparison(calibration)),
+      {open(parameter_comparison(calibration.law)),
        text("Parameters of Eqs. 11, 12 and 14 depend on each other: equal curves come from quite different values. The "
             "curves are what should be compared."),
-       Block{
-           {curve_comparison(calibration, CurveGroup::law), curve_comparison(calibration, CurveGroup::steady_state)}}});
+       Block{{curve_comparison(calibration.law, CurveGroup::law),
+              curve_comparison(calibration.law, CurveGroup::steady_state)}}});
   if (!modes.verdicts.empty()) {
     add("published", "Beside the published numbers, mode by mode",
         {open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),

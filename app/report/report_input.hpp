@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
+#include "fit/published/verdicts.hpp"
 #include "model/vocabulary/test_record.hpp"
 #include "predict/prediction_files.hpp"
 
@@ -23,7 +23,7 @@ struct ReportInput {
   std::vector<TestRecord> tests;  ///< data set, calibration and validation
   std::vector<RunCost> costs;     ///< of the tests, in their order
   fit::Calibration calibration;
-  ModeComparison modes;                                ///< beside what was published
+  fit::ModeComparison modes;                           ///< beside what was published
   std::vector<predict::PredictionFolder> predictions;  ///< by name
   std::vector<Fact> provenance;                        ///< commands, versions, seconds
   std::vector<Fact> spec;                              ///< of the data set, resolved; empty when unknown
@@ -35,7 +35,7 @@ struct ReportInput {
 ReportInput read_report_input(const std::filesystem::path& dir);
 
 /// parameters.json alone, as far as the table of parameters goes. Throws likewise.
-fit::Calibration read_fitted_parameters(const std::filesystem::path& dir);
+CalibratedLaw read_fitted_parameters(const std::filesystem::path& dir);
 
 /// The DEM runs of a prediction; empty when it was made without --dem.
 std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction);

@@ -43,9 +43,9 @@ const DensityCurve& density_curve(const std::string& quantity) {
   return *std::find_if(curves.begin(), curves.end(), [&](const auto& curve) { return curve.quantity == quantity; });
 }
 
-bool is_known(const DensityCurve& curve, const fit::Calibration& calibration) {
+bool is_known(const DensityCurve& curve, const CalibratedLaw& law) {
   return std::all_of(curve.groups.begin(), curve.groups.end(),
-                     [&](const char* group) { return fit::has_values(calibration, group); });
+                     [&](const char* group) { return has_values(law, group); });
 }
 
 std::vector<Observation> symbol_rows(const TestRecord& test, std::size_t points) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/report/figure.hpp"
-#include "fit/calibrate.hpp"
+#include "model/calibrated_law.hpp"
 #include "model/density_curves.hpp"
 #include "model/vocabulary/test_record.hpp"
 
@@ -56,7 +56,7 @@ Series curve(Series style, double from, double to, const Function& function, int
 /// The law's curve over volume fraction that files call `quantity`.
 const DensityCurve& density_curve(const std::string& quantity);
 /// Whether all parameters that it reads are identified.
-bool is_known(const DensityCurve& curve, const fit::Calibration& calibration);
+bool is_known(const DensityCurve& curve, const CalibratedLaw& law);
 
 /// Evenly spaced rows of a run: about `points` as symbols, more as a line, which ends with the last row.
 std::vector<Observation> symbol_rows(const TestRecord& test, std::size_t points);

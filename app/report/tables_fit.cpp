@@ -65,7 +65,7 @@ Table residual_table(const fit::Calibration& calibration) {
 Table left_out_table(const fit::Calibration& calibration) {
   std::vector<Moved> parameters;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const fit::Estimate& estimate = calibration.estimates[i];
+    const Estimate& estimate = calibration.law.estimates[i];
     const fit::LeftOut* furthest = fit::furthest(calibration.left_out, i, estimate.value);
     if (!std::isfinite(estimate.standard_error) || furthest == nullptr) continue;
     parameters.push_back(

@@ -13,30 +13,30 @@ namespace grainlaw::app::report {
 namespace {
 
 using enum Content;
+using fit::Claim, fit::Verdict;
 
 struct Parameter {
   const ParameterInfo& info;
-  const fit::Estimate& estimate;
+  const Estimate& estimate;
 
-  bool is_known() const { return estimate.status != fit::Status::not_identified; }
+  bool is_known() const { return estimate.status != Status::not_identified; }
   double published() const { return info.published.value_or(kUndefined); }
 };
 
-std::vector<Parameter> parameters_of(const fit::Calibration& calibration) {
+std::vector<Parameter> parameters_of(const CalibratedLaw& law) {
   std::vector<Parameter> parameters;
-  for (std::size_t i = 0; i < kParameterCount; ++i)
-    parameters.push_back({parameter_table()[i], calibration.estimates[i]});
+  for (std::size_t i = 0; i < kParameterCount; ++i) parameters.push_back({parameter_table()[i], law.estimates[i]});
   return parameters;
 }
 
 /// "8.27 ± 0.31", "0.6653 (fixed)", "not identified".
 Cell estimate_cell(const Parameter& parameter) {
-  const fit::Estimate& estimate = parameter.estimate;
+  const Estimate& estimate = parameter.estimate;
   std::string status = to_string(estimate.status);
   std::replace(status.begin(), status.end(), '_', ' ');
   if (!parameter.is_known()) return status;
   const Cell value = measured(estimate.value, estimate.standard_error);
-  return estimate.status == fit::Status::fitted ? value : Cell(to_plain(value.text) + " (" + status + ")", value.value);
+  return estimate.status == Status::fitted ? value : Cell(to_plain(value.text) + " (" + status + ")", value.value);
 }
 
 std::string interval_of(const Parameter& parameter) {
@@ -71,12 +71,12 @@ struct Jamming {
 
 }  // namespace
 
-Table parameter_comparison(const fit::Calibration& calibration) {
+Table parameter_comparison(const CalibratedLaw& law) {
   const auto difference = [](const Parameter& p) {
     return percent_difference(p.is_known() ? p.estimate.value : kUndefined, p.published());
   };
   return table_of("Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)", "parameters.json",
-                  parameters_of(calibration),
+                  parameters_of(law),
                   {{"parameter", words, [](auto& p) { return p.info.name; }},
                    {"symbol", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
                    {"Eq.", symbol, [](auto& p) { return equation_text(p.info.equation); }},
@@ -87,21 +87,21 @@ Table parameter_comparison(const fit::Calibration& calibration) {
                    {"note", words, [](auto& p) { return p.estimate.note; }}});
 }
 
-Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
-  const LawParameters<double>&ours = calibration.parameters, published = published_parameters();
+Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
+  const LawParameters<double>&ours = law.parameters, published = published_parameters();
   std::vector<ColumnOf<double>> columns{{"{ν}", number, [](double nu) { return decimals(nu, 2); }}};
-  for (const DensityCurve& law : density_curves()) {
-    if (std::string_view(law.quantity).starts_with("steady_") != (which == CurveGroup::steady_state)) continue;
-    const bool known = is_known(law, calibration);
-    columns.push_back({law.symbol, number, [&, known](double nu) -> Cell {
+  for (const DensityCurve& shown : density_curves()) {
+    if (std::string_view(shown.quantity).starts_with("steady_") != (which == CurveGroup::steady_state)) continue;
+    const bool known = is_known(shown, law);
+    columns.push_back({shown.symbol, number, [&, known](double nu) -> Cell {
                          if (!known) return "not identified";
-                         const double value = law.of(ours, nu);
-                         const std::string difference = percent_difference(value, law.of(published, nu));
+                         const double value = shown.of(ours, nu);
+                         const std::string difference = percent_difference(value, shown.of(published, nu));
                          return {significant_padded(value, 4) + " (" + difference + ")", value};
                        }});
   }
   std::vector<double> densities;
-  for (const CurvePoint& point : curve_points(ours, published, calibration.nu_min, calibration.nu_max)) {
+  for (const CurvePoint& point : curve_points(ours, published, law.range.nu_min, law.range.nu_max)) {
     if (point.curve == &density_curves().front()) densities.push_back(point.nu);
   }
   return table_of(which == CurveGroup::law
@@ -110,7 +110,7 @@ Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
                   "parameters.json", densities, columns);
 }
 
-Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters) {
+Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameters) {
   std::vector<Verdict> shown;
   std::copy_if(verdicts.begin(), verdicts.end(), std::back_inserter(shown),
                [&](const Verdict& v) { return v.is_parameter == of_parameters; });
@@ -128,15 +128,15 @@ Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters) {
                               "over the standard error of a difference between our mean and one other packing",
                               of_parameters ? "Parameters of Tables 2 and 3" : "Curves over density",
                               count(shown, "agrees"), count(shown, "differs"), count(shown, "no error")),
-                  "calibration.json", shown, columns);
+                  "law.json", shown, columns);
 }
 
-Table claim_table(const std::vector<Claim>& claims) {
+Table claim_table(const std::vector<fit::Claim>& claims) {
   return table_of(
       fmt::format("What the paper says beyond Tables 2 and 3: {} agree, {} differ, {} are undecided. Without a "
                   "published value the sign is said: ours above zero",
                   count(claims, "agrees"), count(claims, "differs"), count(claims, "undecided")),
-      "calibration.json", claims,
+      "law.json", claims,
       {{"where", words, &Claim::where},
        {"what", words, &Claim::statement},
        {"{ν}", number, [](auto& c) { return std::isnan(c.nu) ? "" : decimals(c.nu, 3); }},
@@ -145,7 +145,7 @@ Table claim_table(const std::vector<Claim>& claims) {
        {"verdict", words, &Claim::verdict}});
 }
 
-Table jamming_table(const std::vector<Verdict>& verdicts) {
+Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
   std::vector<Jamming> modes;
   for (const char* mode : {"ISO", "UNI", "D2", "D3"}) {
     const auto verdict_on = [&](const char* parameter) -> const Verdict* {
@@ -161,7 +161,7 @@ Table jamming_table(const std::vector<Verdict>& verdicts) {
   return table_of(
       "Jamming densities by mode, from the coordination number (Eq. 11) and from the pressure (Eq. 14): the paper "
       "finds ISO > UNI > D2 = D3",
-      "calibration.json", modes,
+      "law.json", modes,
       {{"mode", words, &Jamming::mode},
        {"{ν}_{c} of {C}*", number, [=](auto& jamming) { return ours(*jamming.of_coordination); }},
        {"published", number, [](auto& jamming) { return digits(jamming.of_coordination->published); }},
@@ -169,11 +169,11 @@ Table jamming_table(const std::vector<Verdict>& verdicts) {
        {"published", number, [](auto& jamming) { return digits(jamming.of_pressure->published); }}});
 }
 
-std::string parameter_summary(const fit::Calibration& calibration) {
+std::string parameter_summary(const CalibratedLaw& law) {
   std::string text = fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", "parameter", "symbol", "ours ± standard error",
                                  "95 % interval", "published");
   text += std::string(104, '-') + "\n";
-  for (const Parameter& p : parameters_of(calibration)) {
+  for (const Parameter& p : parameters_of(law)) {
     text += fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", p.info.name, p.info.symbol,
                         to_plain(estimate_cell(p).text), interval_of(p), significant(p.published(), 5));
   }

@@ -14,11 +14,11 @@ namespace grainlaw::fit {
 
 Calibration nothing_known() {
   Calibration calibration;
-  calibration.parameters = start_parameters();
+  calibration.law.parameters = start_parameters();
   calibration.errors = no_errors();
-  calibration.covariance = calibration.errors.covariance();
-  calibration.estimates[parameter_index("shear.nu_c")] = {calibration.parameters.shear_nu_c, kUndefined, Status::fixed,
-                                                          "degenerate with Q_c and alpha of Eq. (20)"};
+  calibration.law.covariance = calibration.errors.covariance();
+  calibration.law.estimates[parameter_index("shear.nu_c")] = {
+      calibration.law.parameters.shear_nu_c, kUndefined, Status::fixed, "degenerate with Q_c and alpha of Eq. (20)"};
   return calibration;
 }
 
@@ -28,7 +28,7 @@ void record(Calibration& calibration, const StageFit& fit) {
   for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
     const NamedEstimate& e = fit.stage.estimates[k];
     const auto i = static_cast<Eigen::Index>(parameter_index(e.name)), row = static_cast<Eigen::Index>(k);
-    calibration.estimates[static_cast<std::size_t>(i)] = e.estimate;
+    calibration.law.estimates[static_cast<std::size_t>(i)] = e.estimate;
     calibration.errors.degrees_of_freedom(i) = e.estimate.degrees_of_freedom;
     calibration.errors.influence.row(i).setZero();
     if (row < fit.influence.rows())
@@ -39,7 +39,7 @@ void record(Calibration& calibration, const StageFit& fit) {
 void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
                         const CalibrationOptions& options, const RunControl& control) {
   const std::string window = fmt::format("{}, nu >= {:g}", branch, options.iso_nu_min);
-  LawParameters<double>& law = calibration.parameters;
+  LawParameters<double>& law = calibration.law.parameters;
   const std::vector<StageFit> state_law = fit_state_law("", series, window, law.isotropic, options, control);
   for (const StageFit& fit : state_law) record(calibration, fit);
   const StageFit overlap = fit_overlap(series, window, state_law.back(), law.overlap_D, options, control);
@@ -58,7 +58,7 @@ void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, c
                   to_string(mode), options.steady_from);
   if (!series.empty()) {
     for (const StageFit& fit :
-         fit_state_law("steady_", series, window, calibration.parameters.steady, options, control)) {
+         fit_state_law("steady_", series, window, calibration.law.parameters.steady, options, control)) {
       record(calibration, fit);
     }
     return;
@@ -76,7 +76,8 @@ void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, c
 void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
                     const RunControl& control) {
   Stage stage;
-  calibration.shear = fit_shear_tests(data, calibration.parameters.isotropic.pressure.nu_c, options, control, stage);
+  calibration.shear =
+      fit_shear_tests(data, calibration.law.parameters.isotropic.pressure.nu_c, options, control, stage);
   calibration.stages.push_back(stage);
   const std::vector<ShearFit>& shear = calibration.shear;
   const bool any_like_D2 =
@@ -89,7 +90,7 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
     cluster.push_back(packing_of(data, *data.pure_shear[i]));
   }
   for (const ShearQuantity& quantity : kShearQuantities)
-    record(calibration, fit_density_law(quantity, of_law, cluster, calibration.parameters, options, control));
+    record(calibration, fit_density_law(quantity, of_law, cluster, calibration.law.parameters, options, control));
 }
 
 bool all_converged(const Calibration& calibration) {

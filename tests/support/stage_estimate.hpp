@@ -9,7 +9,7 @@
 namespace grainlaw::testing {
 
 /// Throws when the stage says nothing of it.
-inline const fit::Estimate& estimate(const fit::StageFit& fit, const std::string& name) {
+inline const Estimate& estimate(const fit::StageFit& fit, const std::string& name) {
   for (const fit::NamedEstimate& e : fit.stage.estimates) {
     if (e.name == name) return e.estimate;
   }

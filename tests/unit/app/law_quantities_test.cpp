@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "chain/uncertainty.hpp"
 #include "fit/stages/staged_laws.hpp"
 #include "model/student.hpp"
 #include "predict/bands.hpp"
@@ -15,19 +14,19 @@ namespace {
 /// The published law, of which packing c has moved parameter i by 1 % of its value times sin(i + 2 c).
 fit::Calibration calibrated(int packings) {
   fit::Calibration c = fit::nothing_known();
-  c.parameters = published_parameters();
-  c.parameters.anisotropy.a2 = 1.18;
+  c.law.parameters = published_parameters();
+  c.law.parameters.anisotropy.a2 = 1.18;
   fit::widen(c.errors.influence, packings);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string name = parameter_table()[i].name;
     if (name.starts_with("memory") || name == "anisotropy.a0") continue;
-    const double value = *fields(c.parameters)[i];
-    c.estimates[i] = {value, 1, fit::Status::fitted, ""};
-    c.estimates[i].degrees_of_freedom = packings - 1;
+    const double value = *fields(c.law.parameters)[i];
+    c.law.estimates[i] = {value, 1, Status::fitted, ""};
+    c.law.estimates[i].degrees_of_freedom = packings - 1;
     for (int k = 0; k < packings; ++k)
       c.errors.influence(static_cast<Eigen::Index>(i), k) = 0.01 * value * std::sin(static_cast<double>(i) + 2 * k);
   }
-  c.covariance = c.errors.covariance();
+  c.law.covariance = c.errors.covariance();
   return c;
 }
 
@@ -36,7 +35,7 @@ TEST(LawQuantities, ErrorsAreThoseOfTheParametersTimesTheSlope) {
   const auto quantities = chain::law_quantities(c, {0.70, 0.80}, 3);
   ASSERT_EQ(quantities.size(), 13u);
   EXPECT_EQ(quantities[0].name, "P_star@0.70");
-  EXPECT_EQ(quantities[0].values(0), c.parameters.isotropic.P_star(0.70));
+  EXPECT_EQ(quantities[0].values(0), c.law.parameters.isotropic.P_star(0.70));
   const chain::StudyQuantity& nu_c = quantities.back();
   const auto row = static_cast<Eigen::Index>(parameter_index("pressure.nu_c"));
   EXPECT_FALSE(nu_c.in_error);
@@ -47,25 +46,24 @@ TEST(LawQuantities, ErrorsAreThoseOfTheParametersTimesTheSlope) {
   const auto at = [&](const char* name) {
     return Eigen::RowVectorXd(c.errors.influence.row(static_cast<Eigen::Index>(parameter_index(name))));
   };
-  const auto& Q = c.parameters.stress_ratio_max;
-  const double y = 0.70 / c.parameters.shear_nu_c - 1, e = std::exp(-Q.alpha * y);
+  const auto& Q = c.law.parameters.stress_ratio_max;
+  const double y = 0.70 / c.law.parameters.shear_nu_c - 1, e = std::exp(-Q.alpha * y);
   const Eigen::RowVectorXd expected = at("stress_ratio_max.Q_limit") + e * at("stress_ratio_max.Q_c") -
                                       Q.Q_c * y * e * at("stress_ratio_max.alpha") +
-                                      Q.Q_c * Q.alpha * e * (y + 1) / c.parameters.shear_nu_c * at("shear.nu_c");
+                                      Q.Q_c * Q.alpha * e * (y + 1) / c.law.parameters.shear_nu_c * at("shear.nu_c");
   EXPECT_NEAR((s_max.influence - expected).norm(), 0, 1e-8 * expected.norm());
 }
 
 TEST(LawQuantities, PredictionsHaveTheErrorOfTheirBands) {
   const fit::Calibration c = calibrated(4);
   const Path path{0.70, Branch::unloading, {{Mode::UNI, direction_of(Mode::UNI), ExtentKind::target_nu, 0.80}}};
-  ASSERT_EQ(chain::richest_rung(c), Rung::evolution);
+  ASSERT_EQ(richest_rung(c.law), Rung::evolution);
   const auto quantities = chain::predicted_quantities(c, path, Rung::evolution, 4, {});
-  const predict::Uncertainty uncertainty = chain::uncertainty_of(c);
   const auto segments = resolve(path);
   predict::Prediction prediction = predict::predict(
-      Rung::evolution, c.parameters, c.coupling, segments, predict::state_from_law(c.parameters, path.nu),
-      predict::uniform_points(segments, 100), {}, {}, {}, {uncertainty.parameters, true});
-  predict::add_bands(c.parameters, uncertainty, prediction);
+      Rung::evolution, c.law.parameters, c.law.coupling, segments, predict::state_from_law(c.law.parameters, path.nu),
+      predict::uniform_points(segments, 100), {}, {}, {}, {uncertain_parameters(c.law), true});
+  predict::add_bands(c.law, prediction);
   ASSERT_EQ(quantities.size(), 3u);
   for (Eigen::Index i = 1; i < quantities[0].values.size(); ++i) {
     const predict::PredictedRow& row = prediction.rows[static_cast<std::size_t>(i)];
@@ -79,10 +77,10 @@ TEST(LawQuantities, PredictionsHaveTheErrorOfTheirBands) {
 
 TEST(LawQuantities, WhatIsNotIdentifiedIsMissing) {
   fit::Calibration c = calibrated(2);
-  c.estimates[parameter_index("anisotropy.a2")].status = fit::Status::not_identified;
-  EXPECT_EQ(chain::richest_rung(c), Rung::reduced);
-  c.estimates[parameter_index("fabric_rate.Q_c")].status = fit::Status::not_identified;
-  EXPECT_FALSE(chain::richest_rung(c).has_value());
+  c.law.estimates[parameter_index("anisotropy.a2")].status = Status::not_identified;
+  EXPECT_EQ(richest_rung(c.law), Rung::reduced);
+  c.law.estimates[parameter_index("fabric_rate.Q_c")].status = Status::not_identified;
+  EXPECT_FALSE(richest_rung(c.law).has_value());
   for (const chain::StudyQuantity& q : chain::law_quantities(c, {0.70}, 2))
     EXPECT_EQ(std::isnan(q.values(0)), q.name == "beta_F@0.70") << q.name;
 }

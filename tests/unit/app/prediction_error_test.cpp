@@ -12,15 +12,15 @@ namespace grainlaw::app {
 namespace {
 
 /// The published law with errors of `error` times the value of each parameter.
-fit::Calibration calibrated(double error) {
-  fit::Calibration c = fit::nothing_known();
+CalibratedLaw calibrated(double error) {
+  CalibratedLaw c = fit::nothing_known().law;
   c.parameters = published_parameters();
   c.parameters.anisotropy.a2 = 1.18;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string name = parameter_table()[i].name;
     if (name.starts_with("memory") || name == "anisotropy.a0") continue;
     const double value = *fields(c.parameters)[i], se = error * std::abs(value);
-    c.estimates[i] = {value, se, fit::Status::fitted, ""};
+    c.estimates[i] = {value, se, Status::fitted, ""};
     c.estimates[i].degrees_of_freedom = 3;
     c.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = se * se;
   }
@@ -30,7 +30,7 @@ fit::Calibration calibrated(double error) {
 Path shear() { return {0.72, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.2}}}; }
 
 /// Rehearsals on four packings: the law's own values, times 1 + `bias` -+ `scatter` for P*; F_par is the law's.
-std::vector<TestRecord> rehearsals(const fit::Calibration& c, double bias, double scatter) {
+std::vector<TestRecord> rehearsals(const CalibratedLaw& c, double bias, double scatter) {
   const auto segments = resolve(shear());
   const auto law = predict::predict(Rung::evolution, c.parameters, c.coupling, segments,
                                     predict::state_from_law(c.parameters, shear().nu),
@@ -52,9 +52,9 @@ std::vector<TestRecord> rehearsals(const fit::Calibration& c, double bias, doubl
   return tests;
 }
 
-TEST(chain::PredictionError, IsTheBandsHalfWidth) {
+TEST(PredictionError, IsTheBandsHalfWidth) {
   const chain::PredictionError one = chain::prediction_error(calibrated(0.002), shear(), {}),
-                        two = chain::prediction_error(calibrated(0.004), shear(), {});
+                               two = chain::prediction_error(calibrated(0.004), shear(), {});
   EXPECT_EQ(one.rung, Rung::evolution);
   ASSERT_EQ(one.quantities.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -66,25 +66,25 @@ TEST(chain::PredictionError, IsTheBandsHalfWidth) {
   EXPECT_TRUE(std::isnan(chain::prediction_error(calibrated(0), shear(), {}).quantities[0].half_width));
 }
 
-TEST(chain::PredictionError, APathWithoutShearHasPressureAlone) {
+TEST(PredictionError, APathWithoutShearHasPressureAlone) {
   const Path iso{0.72, Branch::unloading, {{Mode::ISO, direction_of(Mode::ISO), ExtentKind::target_nu, 0.8}}};
   const chain::PredictionError e = chain::prediction_error(calibrated(0.002), iso, {});
   ASSERT_EQ(e.quantities.size(), 1u);
   EXPECT_EQ(e.quantities[0].quantity, "P_star");
 }
 
-TEST(chain::PredictionError, NothingIsKnownByALawThatCannotPredict) {
-  fit::Calibration c = calibrated(0.002);
-  c.estimates[parameter_index("anisotropy.a2")].status = fit::Status::not_identified;
+TEST(PredictionError, NothingIsKnownByALawThatCannotPredict) {
+  CalibratedLaw c = calibrated(0.002);
+  c.estimates[parameter_index("anisotropy.a2")].status = Status::not_identified;
   EXPECT_EQ(chain::prediction_error(c, shear(), {}).rung, Rung::reduced);
-  c.estimates[parameter_index("fabric_rate.Q_c")].status = fit::Status::not_identified;
+  c.estimates[parameter_index("fabric_rate.Q_c")].status = Status::not_identified;
   const chain::PredictionError e = chain::prediction_error(c, shear(), {});
   ASSERT_EQ(e.quantities.size(), 3u);
   EXPECT_TRUE(std::isnan(e.quantities[0].half_width));
 }
 
-TEST(chain::PredictionError, DiscrepancyIsWhatChanceDoesNotExplain) {
-  const fit::Calibration c = calibrated(1e-7);  // a band of nearly no width
+TEST(PredictionError, DiscrepancyIsWhatChanceDoesNotExplain) {
+  const CalibratedLaw c = calibrated(1e-7);  // a band of nearly no width
   const chain::PredictionError exact = chain::prediction_error(c, shear(), rehearsals(c, 0, 0));
   EXPECT_EQ(exact.quantities[2].quantity, "F_par");
   EXPECT_LT(exact.quantities[0].discrepancy, 1e-5);
@@ -101,16 +101,16 @@ TEST(chain::PredictionError, DiscrepancyIsWhatChanceDoesNotExplain) {
   EXPECT_EQ(chain::prediction_error(c, shear(), rehearsals(c, 0, 0.1)).quantities[0].discrepancy, 0);
 }
 
-TEST(chain::PredictionError, AWideBandExplainsAsMuchAsChance) {
-  const fit::Calibration c = calibrated(0.002);
+TEST(PredictionError, AWideBandExplainsAsMuchAsChance) {
+  const CalibratedLaw c = calibrated(0.002);
   const double width = chain::prediction_error(c, shear(), {}).quantities[0].half_width;
   const double within = 0.2 * width;
   EXPECT_EQ(chain::prediction_error(c, shear(), rehearsals(c, within, 0)).quantities[0].discrepancy, 0);
   EXPECT_GT(chain::prediction_error(c, shear(), rehearsals(c, 2 * width, 0)).quantities[0].discrepancy_min, 0);
 }
 
-TEST(chain::PredictionError, OneRehearsalSaysNothing) {
-  const fit::Calibration c = calibrated(0.002);
+TEST(PredictionError, OneRehearsalSaysNothing) {
+  const CalibratedLaw c = calibrated(0.002);
   auto one = rehearsals(c, 0.5, 0);
   one.resize(1);
   EXPECT_TRUE(std::isnan(chain::prediction_error(c, shear(), one).quantities[0].discrepancy));

@@ -52,11 +52,11 @@ TEST(ReportSeries, RowsAreThinnedEvenlyAndALineEndsWithTheLast) {
 }
 
 TEST(ReportSeries, ACurveOfTheLawIsKnownWhenAllThatItReadsIs) {
-  fit::Calibration calibration = test::report_scene().calibration;
-  EXPECT_TRUE(is_known(density_curve("P_star"), calibration));
-  calibration.estimates[parameter_index("rattlers.phi_c")].status = fit::Status::not_identified;
-  EXPECT_FALSE(is_known(density_curve("P_star"), calibration)) << "P* reads C through the rattlers";
-  EXPECT_TRUE(is_known(density_curve("C_star"), calibration));
+  CalibratedLaw law = test::report_scene().calibration.law;
+  EXPECT_TRUE(is_known(density_curve("P_star"), law));
+  law.estimates[parameter_index("rattlers.phi_c")].status = Status::not_identified;
+  EXPECT_FALSE(is_known(density_curve("P_star"), law)) << "P* reads C through the rattlers";
+  EXPECT_TRUE(is_known(density_curve("C_star"), law));
 }
 
 }  // namespace

@@ -71,13 +71,13 @@ TEST(LodeFit, LeavesTheLawOfD2Alone) {
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string name = parameter_table()[i].name;
     if (name.starts_with("lode.")) {
-      EXPECT_EQ(without.estimates[i].status, Status::fixed) << name;
-      EXPECT_NE(without.estimates[i].note.find("add D3"), std::string::npos) << "names the remedy";
-      EXPECT_EQ(*fields(without.parameters)[i], 0);
-      EXPECT_EQ(with.estimates[i].status, Status::fitted) << name;
-      EXPECT_NEAR(*fields(with.parameters)[i], *fields(law)[i], 0.02 * *fields(law)[i]) << name;
+      EXPECT_EQ(without.law.estimates[i].status, Status::fixed) << name;
+      EXPECT_NE(without.law.estimates[i].note.find("add D3"), std::string::npos) << "names the remedy";
+      EXPECT_EQ(*fields(without.law.parameters)[i], 0);
+      EXPECT_EQ(with.law.estimates[i].status, Status::fitted) << name;
+      EXPECT_NEAR(*fields(with.law.parameters)[i], *fields(law)[i], 0.02 * *fields(law)[i]) << name;
     } else {
-      EXPECT_EQ(*fields(with.parameters)[i], *fields(without.parameters)[i]) << name;
+      EXPECT_EQ(*fields(with.law.parameters)[i], *fields(without.law.parameters)[i]) << name;
     }
   }
 }

@@ -113,12 +113,12 @@ TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
   SyntheticOptions few = of_memory();
   few.densities = {0.70, 0.74};
   const Calibration calibration = calibrate(testing::synthetic_dataset(memory_truth(), few), {}, {});
-  EXPECT_FALSE(has_values(calibration, "memory"));
-  const Estimate& G = calibration.estimates[parameter_index("memory.G")];
+  EXPECT_FALSE(has_values(calibration.law, "memory"));
+  const Estimate& G = calibration.law.estimates[parameter_index("memory.G")];
   EXPECT_EQ(G.status, Status::not_identified);
   EXPECT_NE(G.note.find("shear by D2 at more densities"), std::string::npos) << G.note;
   for (const char* name : {"memory.m", "memory.a_P"})
-    EXPECT_EQ(calibration.estimates[parameter_index(name)].status, Status::fixed) << name;
+    EXPECT_EQ(calibration.law.estimates[parameter_index(name)].status, Status::fixed) << name;
 }
 
 TEST(MemoryFit, SlopesAreFiniteAtAReversal) {

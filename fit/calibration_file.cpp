@@ -1,21 +1,21 @@
-#include "app/files/calibration_file.hpp"
+#include "fit/calibration_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "chain/estimate_json.hpp"
-#include "app/files/fit_checks_json.hpp"
-#include "model/files/one_line.hpp"
+#include "fit/leave_one_out.hpp"
 #include "fit/statistics/curve_error.hpp"
 #include "model/density_curves.hpp"
+#include "model/files/one_line.hpp"
+#include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 namespace {
 
-OrderedJson residual_to_json(const fit::TestResidual& r) {
+OrderedJson residual_to_json(const TestResidual& r) {
   return {{"test", r.test},
           {"quantity", r.quantity},
           {"in_cost", r.in_cost},
@@ -27,8 +27,8 @@ OrderedJson residual_to_json(const fit::TestResidual& r) {
           {"max_abs_data", number_or_null(r.max_abs_data)}};
 }
 
-fit::TestResidual residual_from_json(const Json& object) {
-  fit::TestResidual r;
+TestResidual residual_from_json(const Json& object) {
+  TestResidual r;
   r.test = object.at("test");
   r.quantity = object.at("quantity");
   r.in_cost = object.at("in_cost");
@@ -41,7 +41,39 @@ fit::TestResidual residual_from_json(const Json& object) {
   return r;
 }
 
-OrderedJson stage_to_json(const fit::Stage& stage) {
+OrderedJson profile_to_json(const Profile& profile) {
+  OrderedJson object{{"parameter", profile.parameter},
+                     {"reason", profile.reason},
+                     {"lower", number_or_null(profile.lower)},
+                     {"upper", number_or_null(profile.upper)}};
+  OrderedJson& points = object["points"] = OrderedJson::array();
+  for (const ProfilePoint& point : profile.points)
+    points.push_back({{"value", point.value}, {"excess", number_or_null(point.excess)}});
+  if (!profile.experiment.empty()) object["experiment"] = profile.experiment;
+  return object;
+}
+
+Profile profile_from_json(const Json& object) {
+  Profile profile{object.at("parameter"),
+                  object.at("reason"),
+                  number_or_nan(object.at("lower")),
+                  number_or_nan(object.at("upper")),
+                  {},
+                  object.value("experiment", "")};
+  for (const Json& point : object.at("points"))
+    profile.points.push_back({point.at("value"), number_or_nan(point.at("excess"))});
+  return profile;
+}
+
+OrderedJson starts_to_json(const StartSearch& starts) {
+  return {{"tried", starts.tried}, {"at_minimum", starts.at_minimum}, {"next_cost", number_or_null(starts.next_cost)}};
+}
+
+StartSearch starts_from_json(const Json& object) {
+  return {object.at("tried"), object.at("at_minimum"), number_or_nan(object.at("next_cost"))};
+}
+
+OrderedJson stage_to_json(const Stage& stage) {
   OrderedJson object{{"name", stage.name},
                      {"window", stage.window},
                      {"residuals", stage.residuals},
@@ -54,16 +86,16 @@ OrderedJson stage_to_json(const fit::Stage& stage) {
                      {"seconds", stage.seconds}};
   object["starts"] = starts_to_json(stage.starts);
   OrderedJson& profiles = object["profiles"] = OrderedJson::array();
-  for (const fit::Profile& profile : stage.profiles) profiles.push_back(profile_to_json(profile));
+  for (const Profile& profile : stage.profiles) profiles.push_back(profile_to_json(profile));
   OrderedJson& estimates = object["estimates"] = OrderedJson::object();
-  for (const fit::NamedEstimate& named : stage.estimates) estimates[named.name] = chain::estimate_to_json(named.estimate);
+  for (const NamedEstimate& named : stage.estimates) estimates[named.name] = estimate_to_json(named.estimate);
   OrderedJson& tests = object["tests"] = OrderedJson::array();
-  for (const fit::TestResidual& residual : stage.tests) tests.push_back(residual_to_json(residual));
+  for (const TestResidual& residual : stage.tests) tests.push_back(residual_to_json(residual));
   return object;
 }
 
-fit::Stage stage_from_json(const Json& object) {
-  fit::Stage stage;
+Stage stage_from_json(const Json& object) {
+  Stage stage;
   stage.name = object.at("name");
   stage.window = object.at("window");
   stage.residuals = object.at("residuals");
@@ -77,61 +109,60 @@ fit::Stage stage_from_json(const Json& object) {
   stage.starts = starts_from_json(object.at("starts"));
   for (const Json& profile : object.at("profiles")) stage.profiles.push_back(profile_from_json(profile));
   for (const auto& item : object.at("estimates").items())
-    stage.estimates.push_back({item.key(), chain::estimate_from_json(item.value())});
+    stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
   for (const Json& residual : object.at("tests")) stage.tests.push_back(residual_from_json(residual));
   return stage;
 }
 
 // The numbers of a shear fit that are no estimates, under their JSON keys.
-constexpr std::array<std::pair<const char*, double fit::ShearFit::*>, 13> kShearNumbers{{
-    {"nu", &fit::ShearFit::nu},
-    {"eps_dev_max", &fit::ShearFit::eps_dev_max},
-    {"s_0", &fit::ShearFit::s_0},
-    {"F_0", &fit::ShearFit::F_0},
-    {"s_steady", &fit::ShearFit::s_steady},
-    {"F_steady", &fit::ShearFit::F_steady},
-    {"C_star", &fit::ShearFit::C_star},
-    {"rattler_fraction", &fit::ShearFit::rattler_fraction},
-    {"P_star", &fit::ShearFit::P_star},
-    {"steady_from", &fit::ShearFit::steady_from},
-    {"steady_since_s", &fit::ShearFit::steady_since_s},
-    {"steady_since_F", &fit::ShearFit::steady_since_F},
-    {"steady_since_P", &fit::ShearFit::steady_since_P},
+constexpr std::array<std::pair<const char*, double ShearFit::*>, 13> kShearNumbers{{
+    {"nu", &ShearFit::nu},
+    {"eps_dev_max", &ShearFit::eps_dev_max},
+    {"s_0", &ShearFit::s_0},
+    {"F_0", &ShearFit::F_0},
+    {"s_steady", &ShearFit::s_steady},
+    {"F_steady", &ShearFit::F_steady},
+    {"C_star", &ShearFit::C_star},
+    {"rattler_fraction", &ShearFit::rattler_fraction},
+    {"P_star", &ShearFit::P_star},
+    {"steady_from", &ShearFit::steady_from},
+    {"steady_since_s", &ShearFit::steady_since_s},
+    {"steady_since_F", &ShearFit::steady_since_F},
+    {"steady_since_P", &ShearFit::steady_since_P},
 }};
-constexpr std::array<std::pair<const char*, fit::Estimate fit::ShearFit::*>, 4> kShearEstimates{{
-    {"s_max", &fit::ShearFit::s_max},
-    {"beta_s", &fit::ShearFit::beta_s},
-    {"F_max", &fit::ShearFit::F_max},
-    {"beta_F", &fit::ShearFit::beta_F},
+constexpr std::array<std::pair<const char*, Estimate ShearFit::*>, 4> kShearEstimates{{
+    {"s_max", &ShearFit::s_max},
+    {"beta_s", &ShearFit::beta_s},
+    {"F_max", &ShearFit::F_max},
+    {"beta_F", &ShearFit::beta_F},
 }};
 
-OrderedJson shear_to_json(const fit::ShearFit& shear) {
+OrderedJson shear_to_json(const ShearFit& shear) {
   OrderedJson object{{"test", shear.test}, {"mode", to_string(shear.mode)}, {"seed", shear.seed}};
   for (const auto& [key, member] : kShearNumbers) object[key] = number_or_null(shear.*member);
-  for (const auto& [key, member] : kShearEstimates) object[key] = chain::estimate_to_json(shear.*member);
+  for (const auto& [key, member] : kShearEstimates) object[key] = estimate_to_json(shear.*member);
   return object;
 }
 
-fit::ShearFit shear_from_json(const Json& object) {
-  fit::ShearFit shear;
+ShearFit shear_from_json(const Json& object) {
+  ShearFit shear;
   shear.test = object.at("test");
   for (const Mode mode : {Mode::ISO, Mode::UNI, Mode::D2, Mode::D3, Mode::tensor}) {
     if (to_string(mode) == object.at("mode")) shear.mode = mode;
   }
   shear.seed = object.at("seed");
   for (const auto& [key, member] : kShearNumbers) shear.*member = number_or_nan(object.at(key));
-  for (const auto& [key, member] : kShearEstimates) shear.*member = chain::estimate_from_json(object.at(key));
+  for (const auto& [key, member] : kShearEstimates) shear.*member = estimate_from_json(object.at(key));
   return shear;
 }
 
 /// Ours beside the published curves of `mode`; null where the data do not determine ours.
-OrderedJson curves_to_json(const fit::Calibration& calibration, const std::string& mode) {
+OrderedJson curves_to_json(const Calibration& calibration, const std::string& mode) {
   OrderedJson curves = OrderedJson::array();
-  for (const CurvePoint& point :
-       curve_points(calibration.parameters, published_parameters(mode), calibration.nu_min, calibration.nu_max)) {
-    const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
-                                   [&](const char* group) { return fit::has_values(calibration, group); });
-    const double error = known ? fit::standard_error(calibration, *point.curve, point.nu) : std::nan("");
+  for (const CurvePoint& point : curve_points(calibration.law.parameters, published_parameters(mode),
+                                              calibration.law.range.nu_min, calibration.law.range.nu_max)) {
+    const bool known = has_values(calibration.law, *point.curve);
+    const double error = known ? standard_error(calibration.law, *point.curve, point.nu) : std::nan("");
     curves.push_back({{"quantity", point.curve->quantity},
                       {"nu", point.nu},
                       {"ours", known ? number_or_null(point.ours) : OrderedJson()},
@@ -141,25 +172,60 @@ OrderedJson curves_to_json(const fit::Calibration& calibration, const std::strin
   return curves;
 }
 
-OrderedJson stages_to_json(const fit::Calibration& calibration) {
+OrderedJson stages_to_json(const Calibration& calibration) {
   OrderedJson stages = OrderedJson::array();
-  for (const fit::Stage& stage : calibration.stages) stages.push_back(stage_to_json(stage));
+  for (const Stage& stage : calibration.stages) stages.push_back(stage_to_json(stage));
   return stages;
 }
 
-OrderedJson shears_to_json(const fit::Calibration& calibration) {
+OrderedJson shears_to_json(const Calibration& calibration) {
   OrderedJson shear = OrderedJson::array();
-  for (const fit::ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
+  for (const ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
   return shear;
 }
 
 /// `object` holds "stages" and "shear".
-void read_stages(const Json& object, fit::Calibration& calibration) {
+void read_stages(const Json& object, Calibration& calibration) {
   for (const Json& stage : object.at("stages")) calibration.stages.push_back(stage_from_json(stage));
   for (const Json& shear : object.at("shear")) calibration.shear.push_back(shear_from_json(shear));
 }
 
-OrderedJson description_to_json(const fit::Description& d) {
+/// Seeds, and per parameter with an error: values without each of them, stated and jackknife error; null without any fit.
+OrderedJson left_out_to_json(const Calibration& calibration) {
+  if (calibration.left_out.empty()) return OrderedJson();
+  OrderedJson seeds = OrderedJson::array(), notes = OrderedJson::array(), parameters = OrderedJson::object();
+  for (const LeftOut& fit : calibration.left_out) {
+    seeds.push_back(fit.seed);
+    notes.push_back(fit.note);
+  }
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const double stated = calibration.law.estimates[i].standard_error;
+    if (!std::isfinite(stated)) continue;
+    OrderedJson values = OrderedJson::array();
+    for (const LeftOut& fit : calibration.left_out) values.push_back(number_or_null(fit.value[i]));
+    const double jackknife = jackknife_error(calibration.left_out, i);
+    parameters[parameter_table()[i].name] = {{"values", values},
+                                             {"standard_error", stated},
+                                             {"jackknife_error", number_or_null(jackknife)},
+                                             {"ratio", number_or_null(jackknife / stated)}};
+  }
+  return {{"seeds", seeds}, {"notes", notes}, {"parameters", parameters}};
+}
+
+/// Values of the parameters that the object names; NaN for the others.
+std::vector<LeftOut> left_out_from_json(const Json& object) {
+  std::vector<LeftOut> fits;
+  if (object.is_null()) return fits;
+  for (std::size_t k = 0; k < object.at("seeds").size(); ++k)
+    fits.push_back({object["seeds"][k], std::vector<double>(kParameterCount, std::nan("")), object.at("notes").at(k)});
+  for (const auto& item : object.at("parameters").items()) {
+    for (std::size_t k = 0; k < fits.size(); ++k)
+      fits[k].value[parameter_index(item.key())] = number_or_nan(item.value().at("values").at(k));
+  }
+  return fits;
+}
+
+OrderedJson description_to_json(const Description& d) {
   return {{"name", d.name},
           {"stages", stages_to_json(d.calibration)},
           {"shear", shears_to_json(d.calibration)},
@@ -212,14 +278,13 @@ Claim claim_from_json(const Json& object) {
 
 }  // namespace
 
-void write_calibration(const std::filesystem::path& file, const fit::Calibration& calibration,
-                       const fit::CalibrationOptions& options, const ModeComparison& modes,
-                       const std::string& dataset_digest, const OrderedJson& provenance) {
+void write_calibration(const std::filesystem::path& file, const Calibration& calibration,
+                       const CalibrationOptions& options, const ModeComparison& modes, const OrderedJson& provenance) {
   OrderedJson document;
   document["format"] = "grainlaw calibration";
   document["format_version"] = 1;
-  document["coupling"] = to_string(calibration.coupling);
-  document["converged"] = calibration.converged;
+  document["coupling"] = to_string(calibration.law.coupling);
+  document["converged"] = calibration.law.converged;
   document["options"] = {{"iso_nu_min", options.iso_nu_min},
                          {"rate_window", options.rate_window},
                          {"steady_from", options.steady_from},
@@ -232,13 +297,13 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
                          {"fabric_scale", options.fabric_scale},
                          {"loss", to_string(options.loss)},
                          {"starts", options.starts}};
-  document["dataset_digest"] = dataset_digest;
+  document["dataset_digest"] = calibration.law.dataset_digest;
   document["stages"] = stages_to_json(calibration);
   document["shear"] = shears_to_json(calibration);
   document["leave_one_out"] = left_out_to_json(calibration);
   document["curves"] = curves_to_json(calibration, "");
   OrderedJson& descriptions = document["descriptions"] = OrderedJson::array();
-  for (const fit::Description& d : modes.descriptions) descriptions.push_back(description_to_json(d));
+  for (const Description& d : modes.descriptions) descriptions.push_back(description_to_json(d));
   OrderedJson& verdicts = document["verdicts"] = OrderedJson::array();
   for (const Verdict& v : modes.verdicts) verdicts.push_back(verdict_to_json(v));
   OrderedJson& claims = document["claims"] = OrderedJson::array();
@@ -249,7 +314,7 @@ void write_calibration(const std::filesystem::path& file, const fit::Calibration
   write_json(file, document);
 }
 
-ModeComparison read_calibration(const std::filesystem::path& file, fit::Calibration& calibration) {
+ModeComparison read_calibration(const std::filesystem::path& file, Calibration& calibration) {
   const Json document = read_json(file, JsonSource::own);
   ModeComparison modes;
   try {
@@ -272,4 +337,4 @@ ModeComparison read_calibration(const std::filesystem::path& file, fit::Calibrat
   return modes;
 }
 
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

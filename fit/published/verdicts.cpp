@@ -1,4 +1,4 @@
-#include "app/published/verdicts.hpp"
+#include "fit/published/verdicts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "fit/statistics/curve_error.hpp"
 #include "model/student.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 namespace {
 
 constexpr std::array kDensities{0.68, 0.70, 0.74, 0.80, 0.82};
@@ -33,34 +33,33 @@ void judge(Verdict& v, bool known, std::size_t packings) {
 }
 
 /// `mode` of the laws on an unloading branch and `shear` of those in shear; empty: left out.
-void add(const fit::Calibration& c, const std::string& mode, const std::string& shear, std::size_t packings,
-         std::vector<Verdict>& all) {
+void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::string& shear, std::size_t packings,
+                  std::vector<Verdict>& all) {
   const auto mode_of = [&](std::string_view group) { return of_shear(group) ? shear : mode; };
   const LawParameters<double> published = published_parameters(mode.empty() ? shear : mode);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const ParameterInfo& info = parameter_table()[i];
     const std::string_view name = info.name;
     const std::string whose = mode_of(name.substr(0, name.find('.')));
-    const fit::Estimate& estimate = c.estimates[i];
-    const bool stands_for_itself = estimate.status != fit::Status::fixed && !name.starts_with("anisotropy");
+    const Estimate& estimate = law.estimates[i];
+    const bool stands_for_itself = estimate.status != Status::fixed && !name.starts_with("anisotropy");
     if (!info.published || whose.empty() || !stands_for_itself) continue;
     Verdict v{whose, info.name, true, 0, estimate.value, estimate.standard_error, *fields(published)[i], 0, ""};
-    judge(v, estimate.status != fit::Status::not_identified, packings);
+    judge(v, estimate.status != Status::not_identified, packings);
     all.push_back(v);
   }
   for (const DensityCurve& curve : density_curves()) {
     const std::string whose = mode_of(curve.groups.front());
-    const bool known = std::all_of(curve.groups.begin(), curve.groups.end(),
-                                   [&](const char* group) { return fit::has_values(c, group); });
+    const bool known = has_values(law, curve);
     if (whose.empty() || !known) continue;
     for (const double nu : kDensities) {
-      if (nu < c.nu_min - 1e-6 || nu > c.nu_max + 1e-6) continue;
+      if (nu < law.range.nu_min - 1e-6 || nu > law.range.nu_max + 1e-6) continue;
       Verdict v{whose,
                 curve.quantity,
                 false,
                 nu,
-                curve.of(c.parameters, nu),
-                fit::standard_error(c, curve, nu),
+                curve.of(law.parameters, nu),
+                standard_error(law, curve, nu),
                 curve.of(published, nu),
                 0,
                 ""};
@@ -72,15 +71,15 @@ void add(const fit::Calibration& c, const std::string& mode, const std::string& 
 
 }  // namespace
 
-std::vector<Verdict> verdicts_of(const fit::Calibration& calibration, const std::vector<fit::Description>& descriptions,
+std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions,
                                  std::size_t packings) {
   std::vector<Verdict> all;
-  add(calibration, "ISO", "D2", packings, all);
-  for (const fit::Description& d : descriptions) {
+  add_verdicts(law, "ISO", "D2", packings, all);
+  for (const Description& d : descriptions) {
     const bool unloading = d.name == "UNI";
-    add(d.calibration, unloading ? d.name : "", unloading ? "" : d.name, packings, all);
+    add_verdicts(d.calibration.law, unloading ? d.name : "", unloading ? "" : d.name, packings, all);
   }
   return all;
 }
 
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

@@ -9,7 +9,7 @@
 
 #include "fit/describe.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 
 struct Claim {
   std::string where;          ///< in the paper, e.g. "Table 1", "Fig. 5"
@@ -34,7 +34,7 @@ void judge(Claim& claim, Printed printed, std::size_t packings);
 void judge_equal(Claim& claim, std::size_t packings);
 
 /// All that `tests` (calibration and description) and the fits can speak of, in the order of the paper.
-std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const fit::Calibration& calibration,
-                             const std::vector<fit::Description>& descriptions, double steady_from);
+std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const CalibratedLaw& law,
+                             const std::vector<Description>& descriptions, double steady_from);
 
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

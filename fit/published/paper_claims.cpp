@@ -1,4 +1,4 @@
-#include "app/published/paper_claims.hpp"
+#include "fit/published/paper_claims.hpp"
 
 #include <fmt/format.h>
 
@@ -12,18 +12,18 @@
 #include "fit/statistics/curve_error.hpp"
 #include "model/student.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kRounding = 1e-6;  // of kinematics: exact but for the sums of logarithmic strain
+constexpr double kExact = 1e-6;     // of kinematics: exact but for the sums of logarithmic strain
 constexpr double kScaledAt = 0.15;  // ln(nu/nu_c) at which Eq. (15) is compared: within the rows of every mode
 
-struct Mean {
+struct Measured {
   double value = kNaN, standard_error = kNaN;
 };
 
-Mean mean_of(const std::vector<double>& values) {
+Measured mean_of(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   if (values.empty()) return {};
   double sum = 0, squares = 0;
@@ -47,11 +47,11 @@ ByDensity shear_tests(const std::vector<TestRecord>& tests, Mode mode, Branch br
 
 using Value = std::function<double(const TestRecord&)>;
 
-Value first(double Observation::*quantity) {
+Value at_start(double Observation::*quantity) {
   return [=](const TestRecord& test) { return test.rows.front().*quantity; };
 }
 
-Value steady(double Observation::*quantity, double from) {
+Value when_steady(double Observation::*quantity, double from) {
   return [=](const TestRecord& test) {
     double sum = 0, rows = 0;
     for (const Observation& row : test.rows) {
@@ -78,7 +78,7 @@ std::vector<double> differences(const BySeed& a, const Value& of_a, const BySeed
 class Claims {
  public:
   /// A sign, or with `printed` a value.
-  void add(const std::string& where, const std::string& statement, double nu, Mean ours, std::size_t packings,
+  void add(const std::string& where, const std::string& statement, double nu, Measured ours, std::size_t packings,
            Printed printed = {}) {
     if (!std::isfinite(ours.value)) return;
     all.push_back({where, statement, nu, ours.value, ours.standard_error, printed.value, ""});
@@ -92,7 +92,7 @@ class Claims {
       const auto other = b.find(density);
       if (other == b.end()) continue;
       const std::vector<double> d = differences(tests, value, other->second, value);
-      const Mean mean = mean_of(d);
+      const Measured mean = mean_of(d);
       if (d.empty()) continue;
       all.push_back({where, statement, static_cast<double>(density) / 1e6, mean.value, mean.standard_error, 0, ""});
       judge_equal(all.back(), d.size());
@@ -151,19 +151,20 @@ void add_branches(const std::vector<TestRecord>& tests, double steady_from, Clai
   for (const auto& [density, on_loading] : loading) {
     const auto other = unloading.find(density);
     if (other == unloading.end()) continue;
-    const auto d = differences(on_loading, first(&Observation::C_star), other->second, first(&Observation::C_star));
+    const auto d =
+        differences(on_loading, at_start(&Observation::C_star), other->second, at_start(&Observation::C_star));
     claims.add("Fig. 4", "C* before shear: loading branch above unloading branch", static_cast<double>(density) / 1e6,
                mean_of(d), d.size());
   }
   claims.add_equal("Fig. 5", "steady C* in D2: the same from both branches (difference)", loading, unloading,
-                   steady(&Observation::C_star, steady_from));
+                   when_steady(&Observation::C_star, steady_from));
   claims.add_equal("Fig. 8", "steady P* in D2: the same from both branches (difference)", loading, unloading,
-                   steady(&Observation::P_star, steady_from));
+                   when_steady(&Observation::P_star, steady_from));
   const auto drift = [&](const ByDensity& densities, double sign, const std::string& statement) {
     if (densities.empty()) return;
     const auto& [density, lowest] = *densities.begin();
     std::vector<double> d =
-        differences(lowest, steady(&Observation::P_star, steady_from), lowest, first(&Observation::P_star));
+        differences(lowest, when_steady(&Observation::P_star, steady_from), lowest, at_start(&Observation::P_star));
     for (double& x : d) x *= sign;
     claims.add("Fig. 8", statement, static_cast<double>(density) / 1e6, mean_of(d), d.size());
   };
@@ -174,39 +175,37 @@ void add_branches(const std::vector<TestRecord>& tests, double steady_from, Clai
 void add_collapse(const std::vector<TestRecord>& tests, double steady_from, Claims& claims) {
   const ByDensity D2 = shear_tests(tests, Mode::D2, Branch::unloading);
   const ByDensity D3 = shear_tests(tests, Mode::D3, Branch::unloading);
-  claims.add_equal("Fig. 15", "steady s: D3 as D2 (difference)", D3, D2, steady(&Observation::s_par, steady_from));
-  claims.add_equal("Fig. 16", "steady F: D3 as D2 (difference)", D3, D2, steady(&Observation::F_par, steady_from));
+  claims.add_equal("Fig. 15", "steady s: D3 as D2 (difference)", D3, D2, when_steady(&Observation::s_par, steady_from));
+  claims.add_equal("Fig. 16", "steady F: D3 as D2 (difference)", D3, D2, when_steady(&Observation::F_par, steady_from));
 }
 
 /// Value of a curve of one mode with its error.
-Mean at(const fit::Calibration* c, const DensityCurve& curve, double nu) {
-  if (c == nullptr ||
-      !std::all_of(curve.groups.begin(), curve.groups.end(), [&](const char* g) { return fit::has_values(*c, g); }))
-    return {};
-  return {curve.of(c->parameters, nu), fit::standard_error(*c, curve, nu)};
+Measured value_of(const CalibratedLaw* law, const DensityCurve& curve, double nu) {
+  if (law == nullptr || !has_values(*law, curve)) return {};
+  return {curve.of(law->parameters, nu), standard_error(*law, curve, nu)};
 }
 
 /// Difference of two fits; they are of the same packings, whose common scatter this counts twice.
-Mean operator-(const Mean& a, const Mean& b) {
+Measured operator-(const Measured& a, const Measured& b) {
   return {a.value - b.value, std::hypot(a.standard_error, b.standard_error)};
 }
 
-void add_orders(const fit::Calibration& iso, const std::vector<fit::Description>& descriptions, std::size_t packings,
+void add_orders(const CalibratedLaw& iso, const std::vector<Description>& descriptions, std::size_t packings,
                 Claims& claims) {
-  const auto mode = [&](const char* name) -> const fit::Calibration* {
+  const auto mode = [&](const char* name) -> const CalibratedLaw* {
     const auto d =
         std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& x) { return x.name == name; });
-    return d == descriptions.end() ? nullptr : &d->calibration;
+    return d == descriptions.end() ? nullptr : &d->calibration.law;
   };
-  const fit::Calibration *uni = mode("UNI"), *d3 = mode("D3");
+  const CalibratedLaw *uni = mode("UNI"), *d3 = mode("D3");
   using P = const LawParameters<double>&;
   const auto jamming = [&](const std::string& what, const DensityCurve& unloading, const DensityCurve& steady_state) {
-    const Mean a = at(&iso, unloading, 0), b = at(uni, unloading, 0), c = at(&iso, steady_state, 0),
-               d = at(d3, steady_state, 0);
+    const Measured a = value_of(&iso, unloading, 0), b = value_of(uni, unloading, 0),
+                   c = value_of(&iso, steady_state, 0), d = value_of(d3, steady_state, 0);
     claims.add("Table 2", "nu_c of " + what + ": ISO above UNI", kNaN, a - b, packings);
     claims.add("Table 2", "nu_c of " + what + ": UNI above D2", kNaN, b - c, packings);
     claims.add("Table 2", "nu_c of " + what + ": ISO above D2", kNaN, a - c, packings);
-    const Mean difference = d - c;
+    const Measured difference = d - c;
     if (!std::isfinite(difference.value)) return;
     claims.all.push_back({"Table 2", "nu_c of " + what + ": D3 as D2 (difference)", kNaN, difference.value,
                           difference.standard_error, 0, ""});
@@ -221,10 +220,11 @@ void add_orders(const fit::Calibration& iso, const std::vector<fit::Description>
     return *std::find_if(density_curves().begin(), density_curves().end(),
                          [&](const DensityCurve& c) { return std::string(quantity) == c.quantity; });
   };
-  const Mean rattlers = at(&iso, named("rattler_fraction"), 0.82);
+  const Measured rattlers = value_of(&iso, named("rattler_fraction"), 0.82);
   claims.add("Fig. 7", "rattlers: steady D2 above ISO", 0.82,
-             at(&iso, named("steady_rattler_fraction"), 0.82) - rattlers, packings);
-  claims.add("Fig. 7", "rattlers: UNI above ISO", 0.82, at(uni, named("rattler_fraction"), 0.82) - rattlers, packings);
+             value_of(&iso, named("steady_rattler_fraction"), 0.82) - rattlers, packings);
+  claims.add("Fig. 7", "rattlers: UNI above ISO", 0.82, value_of(uni, named("rattler_fraction"), 0.82) - rattlers,
+             packings);
 
   const DensityCurve scaled{"", "", {"pressure"}, [](P p, double x) {
                               const auto& law = p.isotropic.pressure;
@@ -235,21 +235,21 @@ void add_orders(const fit::Calibration& iso, const std::vector<fit::Description>
                                      return law.p0 * x * (1 - law.gamma_p * x);
                                    }};
   const std::string where = fmt::format("scaled pressure at ln(nu/nu_c) = {}: ", kScaledAt);
-  const Mean u = at(uni, scaled, kScaledAt);
-  claims.add("Fig. 10", where + "ISO above UNI", kNaN, at(&iso, scaled, kScaledAt) - u, packings);
-  claims.add("Fig. 10", where + "UNI above D2", kNaN, u - at(&iso, scaled_steady, kScaledAt), packings);
+  const Measured u = value_of(uni, scaled, kScaledAt);
+  claims.add("Fig. 10", where + "ISO above UNI", kNaN, value_of(&iso, scaled, kScaledAt) - u, packings);
+  claims.add("Fig. 10", where + "UNI above D2", kNaN, u - value_of(&iso, scaled_steady, kScaledAt), packings);
 }
 
 /// Eq. (19): one A* = a0 F_dev in both rows; ours are two, a B* F_dev. The error of B* is small beside that of a.
-void add_anisotropy(const fit::Calibration& c, std::size_t packings, Claims& claims) {
+void add_anisotropy(const CalibratedLaw& law, std::size_t packings, Claims& claims) {
   constexpr double nu = 0.74;
-  if (!fit::has_values(c, "pressure") || nu < c.nu_min || nu > c.nu_max) return;
-  const double B = c.parameters.isotropic.B_star(nu);
+  if (!has_values(law, "pressure") || nu < law.range.nu_min || nu > law.range.nu_max) return;
+  const double B = law.parameters.isotropic.B_star(nu);
   for (const auto& [name, statement] :
        {std::pair{"anisotropy.a1", "A1*/F_dev, the pressure's row; the paper has one A"},
         {"anisotropy.a2", "A2*/F_dev, the row of deviatoric stress; the paper has one A"}}) {
-    const fit::Estimate& a = c.estimates[parameter_index(name)];
-    if (a.status == fit::Status::not_identified) continue;
+    const Estimate& a = law.estimates[parameter_index(name)];
+    if (a.status == Status::not_identified) continue;
     claims.add("Eq. 19", statement, nu, {a.value * B, a.standard_error * B}, packings, {0.137, 0.0005});
   }
 }
@@ -263,7 +263,7 @@ void judge(Claim& claim, Printed printed, std::size_t packings) {
   const double range = packings < 2 ? kNaN : student_95(n - 1) * claim.standard_error;
   if (!is_sign && printed.half_digit == 0) {
     claim.verdict =
-        std::abs(claim.ours - printed.value) <= kRounding * std::max(1.0, printed.value) ? "agrees" : "differs";
+        std::abs(claim.ours - printed.value) <= kExact * std::max(1.0, printed.value) ? "agrees" : "differs";
   } else if (!std::isfinite(range)) {
     claim.verdict = "no error";
   } else if (is_sign) {
@@ -283,18 +283,18 @@ void judge_equal(Claim& claim, std::size_t packings) {
     claim.verdict = std::abs(claim.ours) <= range ? "agrees" : "differs";
 }
 
-std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const fit::Calibration& calibration,
-                             const std::vector<fit::Description>& descriptions, double steady_from) {
+std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const CalibratedLaw& law,
+                             const std::vector<Description>& descriptions, double steady_from) {
   std::set<std::uint64_t> seeds;
   for (const TestRecord& test : tests) seeds.insert(test.packing.seed);
   Claims claims;
   add_kinematics(tests, claims);
   add_uniaxial_end(tests, claims);
-  add_orders(calibration, descriptions, seeds.size(), claims);
+  add_orders(law, descriptions, seeds.size(), claims);
   add_branches(tests, steady_from, claims);
   add_collapse(tests, steady_from, claims);
-  add_anisotropy(calibration, seeds.size(), claims);
+  add_anisotropy(law, seeds.size(), claims);
   return claims.all;
 }
 
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

@@ -1,4 +1,4 @@
-#include "app/published/paper_claims.hpp"
+#include "fit/published/paper_claims.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "fit/stages/staged_laws.hpp"
 #include "model/student.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 namespace {
 
 constexpr double kSteadyFrom = 0.15;
@@ -99,7 +99,7 @@ TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
     tests.push_back(shear(Mode::D2, Branch::loading, seed, c + 0.01 + j, c + 0.2 + j, 0.020, 0.018, 0.17, 0.13));
     tests.push_back(shear(Mode::D3, Branch::unloading, seed, c, c + 0.2, 0.016, 0.018, 0.17 + j, 0.12 + j));
   }
-  const std::vector<Claim> claims = claims_of(tests, fit::nothing_known(), {}, kSteadyFrom);
+  const std::vector<Claim> claims = claims_of(tests, nothing_known(), {}, kSteadyFrom);
   const Claim& before = find(claims, "C* before shear: loading branch above unloading branch");
   EXPECT_NEAR(before.ours, 0.010075, 1e-9);
   EXPECT_EQ(before.verdict, "agrees");
@@ -117,18 +117,18 @@ TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
 }
 
 TEST(PaperClaims, JammingDensitiesAreOrdered) {
-  fit::Calibration c = fit::nothing_known();
-  c.parameters = published_parameters("ISO");
-  c.parameters.anisotropy.a2 = 1.18;
-  c.nu_min = 0.68;
-  c.nu_max = 0.82;
-  fit::Description uni{"UNI", fit::nothing_known()}, d3{"D3", fit::nothing_known()};
-  uni.calibration.parameters = published_parameters("UNI");
-  d3.calibration.parameters = published_parameters("D3");
-  const auto know = [](fit::Calibration& calibration, double error) {
+  Calibration c = nothing_known();
+  c.law.parameters = published_parameters("ISO");
+  c.law.parameters.anisotropy.a2 = 1.18;
+  c.law.range.nu_min = 0.68;
+  c.law.range.nu_max = 0.82;
+  Description uni{"UNI", nothing_known()}, d3{"D3", nothing_known()};
+  uni.calibration.law.parameters = published_parameters("UNI");
+  d3.calibration.law.parameters = published_parameters("D3");
+  const auto know = [](Calibration& calibration, double error) {
     for (std::size_t i = 0; i < kParameterCount; ++i) {
-      calibration.estimates[i] = {*fields(calibration.parameters)[i], error, fit::Status::fitted, ""};
-      calibration.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = error * error;
+      calibration.law.estimates[i] = {*fields(calibration.law.parameters)[i], error, Status::fitted, ""};
+      calibration.law.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = error * error;
     }
   };
   TestRecord packing;
@@ -139,12 +139,12 @@ TEST(PaperClaims, JammingDensitiesAreOrdered) {
     know(c, error);
     know(uni.calibration, error);
     know(d3.calibration, error);
-    const std::vector<Claim> claims = claims_of(tests, c, {uni, d3}, kSteadyFrom);
+    const std::vector<Claim> claims = claims_of(tests, c.law, {uni, d3}, kSteadyFrom);
     const Claim& order = find(claims, "nu_c of P*: ISO above UNI");
     EXPECT_NEAR(order.ours, 0.6649 - 0.6619, 1e-12);
     EXPECT_NEAR(order.standard_error, error * std::numbers::sqrt2, 1e-3 * error);
     const Claim& coupling = find(claims, "A2*/F_dev, the row of deviatoric stress; the paper has one A");
-    EXPECT_NEAR(coupling.ours, c.parameters.anisotropy.a2 * c.parameters.isotropic.B_star(0.74), 1e-12);
+    EXPECT_NEAR(coupling.ours, c.law.parameters.anisotropy.a2 * c.law.parameters.isotropic.B_star(0.74), 1e-12);
     EXPECT_EQ(coupling.verdict, "differs");
     for (const char* statement : {"nu_c of P*: ISO above UNI", "nu_c of P*: UNI above D2", "nu_c of C*: ISO above D2"})
       EXPECT_EQ(find(claims, statement).verdict, verdict) << statement;
@@ -152,4 +152,4 @@ TEST(PaperClaims, JammingDensitiesAreOrdered) {
 }
 
 }  // namespace
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "app/published/paper_claims.hpp"
 #include "fit/describe.hpp"
+#include "fit/published/paper_claims.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::fit {
 
 struct Verdict {
   std::string mode;           ///< "ISO", "UNI", "D2", "D3", "D2-loading"
@@ -26,13 +26,13 @@ struct Verdict {
 
 /// The modes besides the calibration's own, and how all of them compare with what was published.
 struct ModeComparison {
-  std::vector<fit::Description> descriptions;
+  std::vector<Description> descriptions;
   std::vector<Verdict> verdicts;
   std::vector<Claim> claims;
 };
 
 /// Curves at .68 (where the rows reach it), .70, .74, .80 and .82; `packings` n is the number of seeds.
-std::vector<Verdict> verdicts_of(const fit::Calibration& calibration, const std::vector<fit::Description>& descriptions,
+std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions,
                                  std::size_t packings);
 
-}  // namespace grainlaw::app
+}  // namespace grainlaw::fit
