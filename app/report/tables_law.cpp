@@ -128,7 +128,7 @@ Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameter
                               "over the standard error of a difference between our mean and one other packing",
                               of_parameters ? "Parameters of Tables 2 and 3" : "Curves over density",
                               count(shown, "agrees"), count(shown, "differs"), count(shown, "no error")),
-                  "law.json", shown, columns);
+                  "calibration.json", shown, columns);
 }
 
 Table claim_table(const std::vector<fit::Claim>& claims) {
@@ -136,7 +136,7 @@ Table claim_table(const std::vector<fit::Claim>& claims) {
       fmt::format("What the paper says beyond Tables 2 and 3: {} agree, {} differ, {} are undecided. Without a "
                   "published value the sign is said: ours above zero",
                   count(claims, "agrees"), count(claims, "differs"), count(claims, "undecided")),
-      "law.json", claims,
+      "calibration.json", claims,
       {{"where", words, &Claim::where},
        {"what", words, &Claim::statement},
        {"{ν}", number, [](auto& c) { return std::isnan(c.nu) ? "" : decimals(c.nu, 3); }},
@@ -161,7 +161,7 @@ Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
   return table_of(
       "Jamming densities by mode, from the coordination number (Eq. 11) and from the pressure (Eq. 14): the paper "
       "finds ISO > UNI > D2 = D3",
-      "law.json", modes,
+      "calibration.json", modes,
       {{"mode", words, &Jamming::mode},
        {"{ν}_{c} of {C}*", number, [=](auto& jamming) { return ours(*jamming.of_coordination); }},
        {"published", number, [](auto& jamming) { return digits(jamming.of_coordination->published); }},
