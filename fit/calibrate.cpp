@@ -6,14 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
+#include "fit/data/outliers.hpp"
+#include "fit/data/packing_scatter.hpp"
+#include "fit/staged_laws.hpp"
 #include "fit/stages/density_law_fit.hpp"
 #include "fit/stages/evolution_fit.hpp"
 #include "fit/stages/lode_fit.hpp"
 #include "fit/stages/memory_fit.hpp"
-#include "fit/stages/staged_laws.hpp"
-#include "fit/statistics/outliers.hpp"
-#include "fit/statistics/packing_scatter.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -49,8 +49,9 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
   }
 }
 
-void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
-                     const CalibrationOptions& options, const RunControl& control) {
+/// The stage of the memory rung, or why there is none; what is fixed by decision is said as well.
+StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
+                            const CalibrationOptions& options) {
   for (const auto& [name, value] : {std::pair{"memory.m", calibration.law.parameters.memory.m},
                                     {"memory.a_P", calibration.law.parameters.memory.a_P}})
     calibration.law.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
@@ -58,11 +59,9 @@ void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& c
   for (const char* group :
        {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {
     if (has_values(calibration.law, group)) continue;
-    record(calibration,
-           no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state"));
-    return;
+    return no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state");
   }
-  record(calibration, fit_memory(trajectories, calibration.law.parameters, options, control, calibration.errors));
+  return memory_stage(trajectories, options);
 }
 
 ValidRange range_of(const std::vector<Trajectory>& trajectories) {
@@ -94,11 +93,10 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   const std::vector<Trajectory> trajectories =
       trajectories_of(data, calibration.law.parameters.isotropic.pressure.nu_c, options);
   const ByLodeAngle sheared = by_lode_angle(trajectories);
-  record(calibration, fit_evolution(sheared.reference, calibration.law.parameters, unseen_laws(calibration.shear),
-                                    options, control, calibration.errors));
+  run(evolution_stage(sheared.reference, unseen_laws(calibration.shear), options), calibration, options, control);
   set_anisotropy(sheared.reference, calibration, options);
-  record(calibration, fit_lode(sheared.others, calibration.law.parameters, options, control, calibration.errors));
-  fit_memory_rung(sheared.reference, calibration, options, control);
+  run(lode_stage(sheared.others, options), calibration, options, control);
+  run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
   calibration.law.covariance = calibration.errors.covariance();
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
   calibration.law.range = range_of(trajectories);

@@ -8,17 +8,25 @@
 //   6 memory: what the memory rung adds, on the trajectories of 4, with the laws of the stages before
 // Validation tests are refused here, not filtered silently.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "fit/options.hpp"
-#include "fit/outcome.hpp"
+#include "fit/data/options.hpp"
+#include "fit/stages/shear_fit.hpp"
 #include "fit/statistics/inherited_error.hpp"
 #include "model/calibrated_law.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::fit {
+
+/// A calibration without one packing, leave_one_out.hpp.
+struct LeftOut {
+  std::uint64_t seed = 0;     ///< of the packing
+  std::vector<double> value;  ///< in the order of parameter_table(); NaN where not identified
+  std::string note;           ///< what went wrong; may be empty
+};
 
 /// The calibrated law and how it came about.
 struct Calibration {

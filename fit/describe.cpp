@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "fit/data_set.hpp"
-#include "fit/stages/density_series.hpp"
-#include "fit/stages/staged_laws.hpp"
+#include "fit/data/data_set.hpp"
+#include "fit/data/density_series.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "dem/runs/spec_file.hpp"
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::chain {
 namespace {

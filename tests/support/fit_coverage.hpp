@@ -18,7 +18,9 @@
 
 #include "fit/calibrate.hpp"
 #include "fit/stages/density_fit.hpp"
+#include "fit/staged_laws.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/table.hpp"
 
@@ -171,11 +173,10 @@ inline Coverage coverage_of_isotropic_laws(const CoverageStudy& study) {
     RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation, study.packing_scatter);
     for (TestRecord& test : tests) noise.add_to(test);
     const auto series = fit::isotropic_series(fit::check_and_sort(tests), {});
-    StateLaw<double> law = truth.isotropic;
-    const auto fits = fit::fit_state_law("", series, "F2", law, choices, {});
-    for (const fit::StageFit& fit : fits) coverage.add(fit.stage.estimates, truth);
-    coverage.add(fit::fit_overlap(series, "F2", fits.back(), truth.overlap_D, choices, {}).stage.estimates, truth);
-    coverage.add(fit::fit_fabric_trace(series, "F2", truth.fabric_g3, choices, {}).stage.estimates, truth);
+    fit::Calibration found = fit::nothing_known();
+    found.law.parameters = truth;
+    fit::fit_unloading_laws("F2", series, found, choices, {});
+    for (const fit::Stage& stage : found.stages) coverage.add(stage.estimates, truth);
   }
   return coverage;
 }
@@ -200,8 +201,8 @@ inline Coverage coverage_of_steady_laws(const CoverageStudy& study) {
         series.push_back({fmt::format("d2-{}-{}", nu, packing), packing, 0, {point}});
       }
     }
-    StateLaw<double> found = law;
-    for (const fit::StageFit& fit : fit::fit_state_law("steady_", series, "F2", found, {}, {}))
+    LawParameters<double> found = truth;
+    for (const fit::StageFit& fit : run_stages(fit::state_law_stages(fit::kSteadyLaw, series, "F2"), found))
       coverage.add(fit.stage.estimates, truth);
   }
   return coverage;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {

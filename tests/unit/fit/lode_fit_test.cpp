@@ -58,7 +58,7 @@ TEST(LodeFit, GivesBackWhatMadeTheData) {
   LawParameters<double> law = lode_truth();
   law.lode = {};
   const auto all = trajectories_of(check_and_sort(with_D3(lode_truth())), lode_truth().isotropic.pressure.nu_c, {});
-  const StageFit fit = fit_lode(by_lode_angle(all).others, law, {}, {});
+  const StageFit fit = run_stage(lode_stage(by_lode_angle(all).others, {}), law, {}, {});
   EXPECT_TRUE(fit.stage.converged) << fit.stage.termination;
   EXPECT_NEAR(law.lode.stress_ratio, 0.03, 1e-6);
   EXPECT_NEAR(law.lode.fabric, 0.9, 1e-5);

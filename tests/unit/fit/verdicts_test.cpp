@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::fit {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "fit/calibrate.hpp"
-#include "fit/statistics/outliers.hpp"
+#include "fit/data/outliers.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/fit_coverage.hpp"
