@@ -2,7 +2,7 @@
 
 #include "app/commands/commands.hpp"
 #include "app/report/figure_study.hpp"
-#include "app/report/svg_file.hpp"
+#include "app/report/svg_figure.hpp"
 #include "app/terminal/study_text.hpp"
 #include "chain/studies/calibrated_setting.hpp"
 #include "chain/studies/studies.hpp"
