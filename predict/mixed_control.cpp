@@ -21,7 +21,7 @@ constexpr std::size_t kSize = kUnknowns + 7;  // the law's, six strains, shear p
 constexpr double kVanished = 1e-12;           // of the start's P: unjammed
 
 void put(const ControlledState& y, double* out) {
-  std::ranges::copy(packed(y.law), out);
+  pack(y.law, out);
   for (std::size_t c = 0; c < 6; ++c) out[kUnknowns + c] = y.strain(kComponentIndex[c][0], kComponentIndex[c][1]);
   out[kSize - 1] = y.shear_path;
 }

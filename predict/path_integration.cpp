@@ -43,13 +43,15 @@ std::span<double> flat(std::vector<Slope>& slopes) {
   return slopes.empty() ? std::span<double>() : std::span(slopes.front().data(), kUnknowns * slopes.size());
 }
 
-/// Of P, sigma', F', s_r in steady shear.
+void set_all(double& part, double value) { part = value; }
+void set_all(Deviator<double>& part, double value) { part.setConstant(value); }
+
+/// Of the state in steady shear at P.
 void write_typical(double P, double* y) {
-  y[0] = P;
-  deviator_at(y + 1).setConstant(0.1 * P);
-  deviator_at(y + 6).setConstant(0.1);
-  deviator_at(y + 11).setConstant(0.1);
-  deviator_at(y + 16).setConstant(0.1);
+  LawState<double> typical;
+  for_each_part([P](const StatePart& part, auto& of_y) { set_all(of_y, part.of_P ? part.typical * P : part.typical); },
+                typical);
+  pack(typical, y);
 }
 
 }  // namespace
@@ -156,8 +158,7 @@ void PathIntegration::move_unjammed(double e) {
   e_ = e_J;
   jammed_ = true;
   note(EventKind::jammed);
-  LawState<double> state{2 * P_floor_, Deviator<double>::Zero(), Deviator<double>::Zero()};
-  start_from(state);
+  start_from({.P = 2 * P_floor_});
 }
 
 void PathIntegration::move_jammed(double e) {
@@ -214,7 +215,7 @@ void PathIntegration::take_event() {
     jammed_ = false;
     slopes_.clear();
     nu_J_ = law_->segment().nu(e_);
-    state_ = {0, Deviator<double>::Zero(), Deviator<double>::Zero()};
+    state_ = {};
     return;
   }
   turn(true);

@@ -15,10 +15,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-bool is_finite(const LawState<double>& state) {
-  return std::isfinite(state.P) && state.sigma.allFinite() && state.F.allFinite();
-}
-
 void check_tolerances(const Tolerances& tolerances) {
   if (!(tolerances.relative >= 1e-14 && tolerances.relative < 1)) {
     throw InvalidInput(fmt::format("relative tolerance {} is outside [1e-14, 1)", tolerances.relative));
@@ -56,7 +52,7 @@ void check_path(const std::vector<StraightSegment>& segments, const std::vector<
 }
 
 void check_start(const LawParameters<double>& parameters, double nu, const LawState<double>& start) {
-  if (!is_finite(start)) throw InvalidInput("the state at the start of the prediction is not finite");
+  if (!as_vector(start).allFinite()) throw InvalidInput("the state at the start of the prediction is not finite");
   if (!(start.P > 0)) throw InvalidInput(fmt::format("the start is not jammed: P* = {} is not positive", start.P));
   const double nu_c = parameters.isotropic.pressure.nu_c;
   if (!(nu > nu_c)) {
@@ -103,7 +99,7 @@ PathStart start_of(const LawParameters<double>& parameters, double nu, const Law
                    const Sensitivity& sensitivity) {
   PathStart result{start, parameter_steps(parameters, sensitivity.parameters), {}};
   for (const ParameterStep& step : result.steps) {
-    LawState<double> slope{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
+    LawState<double> slope;
     if (sensitivity.start_from_law)
       slope.P = (step.above.isotropic.P_star(nu) - step.below.isotropic.P_star(nu)) / (2 * step.h);
     result.slopes.push_back(slope);
@@ -114,8 +110,9 @@ PathStart start_of(const LawParameters<double>& parameters, double nu, const Law
 }  // namespace
 
 LawState<double> unknown_slope() {
-  const Deviator<double> none = Deviator<double>::Constant(kNaN);
-  return {kNaN, none, none, none};
+  LawState<double> slope;
+  as_vector(slope).setConstant(kNaN);
+  return slope;
 }
 
 std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const std::vector<PathEvent>& events,
@@ -163,7 +160,7 @@ std::string to_string(EventKind kind) {
 }
 
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {
-  LawState<double> state{parameters.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
+  const LawState<double> state{.P = parameters.isotropic.P_star(nu)};
   check_start(parameters, nu, state);
   return state;
 }
@@ -175,7 +172,7 @@ LawState<double> state_from_row(const Observation& row) {
   }
   const LawState<double> state{row.P_star, deviator<double>(row.stress.tensor) * (row.P_star / P),
                                deviator<double>(row.fabric.tensor)};
-  if (!is_finite(state)) throw InvalidInput("the measured start has a stress or fabric that is not finite");
+  if (!as_vector(state).allFinite()) throw InvalidInput("the measured start has a stress or fabric that is not finite");
   return state;
 }
 
@@ -210,7 +207,7 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
   for (std::size_t i = 0; i < path.states.size(); ++i) {
     for (; k < static_cast<std::size_t>(points[i].segment); ++k)
       path_before += segments[k].eps_dev_rate() * segments[k].length;
-    if (!is_finite(path.states[i]) || !(path.states[i].P >= 0)) {
+    if (!as_vector(path.states[i]).allFinite() || !(path.states[i].P >= 0)) {
       throw Error(
           fmt::format("segments[{}] at e = {:.9g}: the {} law gives a state that is not finite or P* < 0; "
                       "check the parameters",

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "model/vocabulary/error.hpp"
 #include "model/reduced_law.hpp"
+#include "model/vocabulary/error.hpp"
 #include "predict/path_states.hpp"
 
 namespace grainlaw::predict {
@@ -69,11 +69,6 @@ PathStates states_of(const LawParameters<double>& parameters, const std::vector<
   return out;
 }
 
-/// a + c b
-LawState<double> moved(const LawState<double>& a, double c, const LawState<double>& b) {
-  return {a.P + c * b.P, a.sigma + c * b.sigma, a.F + c * b.F};
-}
-
 }  // namespace
 
 PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
@@ -87,9 +82,7 @@ PathStates reduced_states(const LawParameters<double>& parameters, const std::ve
     const auto up = states_of(above, segments, moved(start.state, h, start.slopes[k]), points, control).states;
     const auto down = states_of(below, segments, moved(start.state, -h, start.slopes[k]), points, control).states;
     for (std::size_t i = 0; i < static_cast<std::size_t>(unjammed - out.states.begin()); ++i) {
-      const LawState<double> difference = moved(up[i], -1, down[i]),
-                             none{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
-      out.slopes[i][k] = moved(none, 1 / (2 * h), difference);
+      out.slopes[i][k] = moved({}, 1 / (2 * h), moved(up[i], -1, down[i]));
     }
   }
   return out;

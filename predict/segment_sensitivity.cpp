@@ -49,10 +49,10 @@ Slope SegmentSensitivity::of_state(std::size_t k, double e, const Unknowns& y, c
                   packed(pair.below.state_of(e, moved(y.data(), -pair.h, slope.data()).data())), pair.h);
 }
 
-Slope turned_slope(const LawState<double>& state, Slope slope) {
-  const LawState<double> d = unpacked(slope.data());
-  deviator_at(slope.data() + 11) = (d.sigma - state.sigma * (d.P / state.P)) / state.P;
-  return slope;
+Slope turned_slope(const LawState<double>& state, const Slope& slope) {
+  LawState<double> d = unpacked(slope.data());
+  d.s_r = (d.sigma - state.sigma * (d.P / state.P)) / state.P;
+  return packed(d);
 }
 
 }  // namespace grainlaw::predict

@@ -41,6 +41,6 @@ class SegmentSensitivity {
 };
 
 /// Slope after a reversal of `state` at a corner of the path.
-Slope turned_slope(const LawState<double>& state, Slope slope);
+Slope turned_slope(const LawState<double>& state, const Slope& slope);
 
 }  // namespace grainlaw::predict

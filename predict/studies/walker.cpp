@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "model/vocabulary/error.hpp"
+#include "predict/segment_law.hpp"
 #include "predict/solvers/dormand_prince.hpp"
 #include "predict/solvers/runge_kutta.hpp"
-#include "predict/segment_law.hpp"
 
 namespace grainlaw::predict {
 namespace {
@@ -78,13 +78,8 @@ struct Walker::Impl {
     const LawDirection direction = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
     turn_corner(rung, state, direction);
     for (long i = 0; i < n; ++i) {
-      const LawState<double> rate =
-          law_rate(parameters, rung, coupling, state, segment.nu(h * static_cast<double>(i)), direction);
-      state.P += h * rate.P;
-      state.sigma += h * rate.sigma;
-      state.F += h * rate.F;
-      state.s_r += h * rate.s_r;
-      state.E += h * rate.E;
+      const double nu = segment.nu(h * static_cast<double>(i));
+      state = moved(state, h, law_rate(parameters, rung, coupling, state, nu, direction));
     }
     return n;
   }

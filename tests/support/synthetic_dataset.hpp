@@ -81,7 +81,7 @@ class SyntheticDataset {
     const StraightSegment segment = resolve(record.path).front();
     for (int i = 0; i <= options_.rows; ++i) {
       const double e = segment.length * i / options_.rows, nu = segment.nu(e);
-      LawState<double> y{law_.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
+      LawState<double> y{.P = law_.isotropic.P_star(nu)};
       record.rows.push_back(row(record, segment, 0, e, y, law_.isotropic, noise, i > 0));
     }
     return record;
@@ -93,7 +93,7 @@ class SyntheticDataset {
     Noise noise(std::hash<std::string>{}(name), options_.noise_correlation);
     const double factor = 1 + options_.seed_scatter * noise.normal();
     const std::vector<StraightSegment> path = resolve(record.path);
-    LawState<double> y{law_.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
+    LawState<double> y{.P = law_.isotropic.P_star(nu)};
     for (std::size_t k = 0; k < path.size(); ++k) {
       const StraightSegment& segment = path[k];
       const double jump = law_.steady.P_star(segment.nu_start) / y.P - 1;  // to the steady pressure
