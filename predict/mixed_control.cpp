@@ -10,9 +10,9 @@
 
 #include "model/vocabulary/error.hpp"
 #include "predict/controlled_rate.hpp"
-#include "predict/solvers/cvode.hpp"
 #include "predict/path_integration.hpp"
 #include "predict/path_states.hpp"
+#include "predict/solvers/cvode.hpp"
 
 namespace grainlaw::predict {
 namespace {

@@ -11,11 +11,11 @@
 #include <optional>
 #include <vector>
 
-#include "predict/solvers/cvode.hpp"
 #include "predict/path_states.hpp"
 #include "predict/predict.hpp"
 #include "predict/segment_law.hpp"
 #include "predict/segment_sensitivity.hpp"
+#include "predict/solvers/cvode.hpp"
 
 namespace grainlaw::predict {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "predict/parameter_step.hpp"
 #include "predict/predict.hpp"
+#include "predict/segment_sensitivity.hpp"
 
 namespace grainlaw::predict {
 

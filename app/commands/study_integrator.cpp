@@ -10,7 +10,7 @@
 #include "app/study/study_output.hpp"
 #include "app/study/work_precision.hpp"
 #include "model/vocabulary/error.hpp"
-#include "predict/studies/batch.hpp"
+#include "predict/studies/walker.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::app {

@@ -7,7 +7,7 @@
 #include "app/files/parameters_file.hpp"
 #include "app/files/spec_file.hpp"
 #include "app/uncertainty.hpp"
-#include "predict/parameter_step.hpp"
+#include "predict/segment_sensitivity.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::app {
