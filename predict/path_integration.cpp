@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "model/vocabulary/error.hpp"
-#include "predict/path_states.hpp"
 
 namespace grainlaw::predict {
 namespace {
@@ -31,6 +30,13 @@ constexpr double kRounding = 1e-9;  // of a least principal stress that vanishes
 constexpr int kMostEventsInPlace = 20;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Path parameter at which nu of `segment` falls to `nu_jamming`; infinite when its volume does not grow.
+double jamming_point(const StraightSegment& segment, double nu_jamming) {
+  const double dilation = segment.eps_vol_rate();
+  if (!(dilation > 0)) return kInfinity;
+  return std::log(segment.nu_start / nu_jamming) / dilation;
+}
 
 std::vector<double> magnitudes_of(const std::vector<ParameterStep>& steps) {
   std::vector<double> magnitudes;
@@ -100,9 +106,7 @@ double PathIntegration::event(double e, const double* y) const {
   return least;
 }
 
-void PathIntegration::note(EventKind kind) {
-  events_.push_back({kind, {static_cast<int>(index_), e_}, law_->segment().nu(e_)});
-}
+void PathIntegration::note(EventKind kind) { events_.push_back({kind, {index_, e_}, law_->segment().nu(e_)}); }
 
 /// The solver's next run begins at e_ with `state`.
 void PathIntegration::start_from(const LawState<double>& state) {
@@ -115,15 +119,14 @@ void PathIntegration::start_from(const LawState<double>& state) {
   started_ = false;
 }
 
-void PathIntegration::enter(const StraightSegment& segment, std::size_t index) {
+void PathIntegration::enter(const StraightSegment& segment, int index) {
   law_.emplace(parameters_, rung_, coupling_, segment, P_held_);
   sensitivity_.emplace(steps_, rung_, coupling_, segment, P_held_);
   index_ = index;
   e_ = 0;
   events_in_place_ = 0;
   jammed_until_ = rung_ == Rung::memory ? kInfinity : jamming_point(segment, parameters_.isotropic.pressure.nu_c);
-  if (!jammed_) return;
-  turn(false);
+  if (jammed_) turn(false);
 }
 
 /// Turns the state, and its slopes, where the path does at a corner; where spin does `on_the_way` the slopes end.
@@ -219,6 +222,16 @@ void PathIntegration::take_event() {
     return;
   }
   turn(true);
+}
+
+PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                             const std::vector<StraightSegment>& segments, const PathStart& start,
+                             const std::vector<OutputPoint>& points, const Tolerances& tolerances,
+                             const RunControl& control) {
+  PathIntegration integration(parameters, rung, coupling, start, tolerances);
+  PathStates out = walk(integration, segments, points, control);
+  out.statistics = integration.statistics();
+  return out;
 }
 
 }  // namespace grainlaw::predict
