@@ -18,6 +18,8 @@ enum class Coupling {
 };
 
 std::string to_string(Coupling coupling);
+/// The coupling of a name; throws InvalidInput for one that is none.
+Coupling coupling_of(const std::string& name);
 
 /// a0 of Eq. (19) and the pure numbers a1 = A1/(B F_dev), a2 = A2/(B F_dev).
 template <class T>
