@@ -10,7 +10,8 @@ failures=0
 
 clean_tree() {
   rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests,fit/{data,statistics,stages},predict,app,tests/unit}
+  mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests}
+  mkdir -p "$tree"/{fit/{data,statistics,stages},predict/{solvers,studies},app,tests/unit}
   echo '#include <Eigen/Core>' >"$tree/model/vocabulary/tensor.hpp"
   echo '#include "model/vocabulary/tensor.hpp"' >"$tree/model/vocabulary/path.hpp"
   echo '#include "model/vocabulary/path.hpp"' >"$tree/model/files/path_file.hpp"
@@ -26,6 +27,9 @@ clean_tree() {
   printf '#include "fit/stages/stage.hpp"\n#include <ceres/ceres.h>\n' >"$tree/fit/calibrate.cpp"
   printf '#include "model/law.hpp"\n' >"$tree/fit/calibrate.hpp"
   printf '#include "model/law.hpp"\n#include <cvodes/cvodes.h>\n' >"$tree/predict/predict.cpp"
+  echo '#include "model/vocabulary/tensor.hpp"' >"$tree/predict/solvers/cvode.hpp"
+  printf '#include "model/law.hpp"\n#include "predict/solvers/cvode.hpp"\n' >"$tree/predict/predict.hpp"
+  echo '#include "predict/predict.hpp"' >"$tree/predict/studies/walker.hpp"
   printf '#include "fit/calibrate.hpp"\n#include "dem/engine/packing.hpp"\n#include <grainlaw_build_info.hpp>\n' \
     >"$tree/app/commands.cpp"
   seq 400 | sed 's|^|// |' >"$tree/tests/unit/tensor_test.cpp"
@@ -72,6 +76,9 @@ sow fit/data/options.hpp '"fit/stages/stage.hpp"' 'fit/data must not include fit
 sow fit/stages/stage.hpp '"fit/calibrate.hpp"' 'fit/stages must not include fit '
 sow fit/calibrate.cpp '"predict/predict.hpp"' 'fit must not include predict'
 sow predict/predict.cpp '"fit/calibrate.hpp"' 'predict must not include fit'
+sow predict/solvers/cvode.hpp '"predict/predict.hpp"' 'predict/solvers must not include predict'
+sow predict/solvers/cvode.hpp '"model/law.hpp"' 'predict/solvers must not include model'
+sow predict/predict.cpp '"predict/studies/walker.hpp"' 'predict must not include predict/studies'
 sow fit/calibrate.cpp '"dem/engine/packing.hpp"' 'fit must not include dem'
 sow fit/calibrate.hpp '"app/commands.hpp"' 'fit must not include app'
 sow fit/calibrate.hpp '<ceres/ceres.h>' 'belongs to fit/*.cpp only'
