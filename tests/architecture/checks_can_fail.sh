@@ -26,6 +26,12 @@ clean_tree() {
   printf '#include "fit/calibrate.hpp"\n#include "dem/engine/packing.hpp"\n#include <grainlaw_build_info.hpp>\n' \
     >"$tree/app/commands.cpp"
   seq 400 | sed 's|^|// |' >"$tree/tests/unit/tensor_test.cpp"
+  mkdir -p "$tree/docs/theory"
+  printf 'See `model/law.hpp`, `dem/engine/packing`, `fit/*.hpp` and `tests/unit/tensor_test.cpp --all`.\n' >"$tree/README.md"
+  printf '```sh\nfit/calibrate.cpp # [index](theory/index.md)\n```\n[index](theory/index.md#here)\n' >"$tree/docs/page.md"
+  printf '<!-- begin %s -->\n| key |\n|---|\n| `%s` | x |\n<!-- end %s -->\n' parameters law.G parameters \
+    'series columns' 'stress_xx[Pa]' 'series columns' >"$tree/docs/formats.md"
+  printf '`law.G` `stress_xx[Pa]`\n' >"$tree/docs/theory/index.md"
 }
 
 # expect CHECK PATTERN: CHECK must fail and name the PATTERN.
@@ -48,7 +54,7 @@ sow() {
 }
 
 clean_tree
-for check in check_includes.sh check_files.sh; do
+for check in check_includes.sh check_files.sh check_docs.sh; do
   if ! bash "$here/$check" "$tree"; then
     echo "$check refuses the clean tree"
     failures=$((failures + 1))
@@ -89,8 +95,28 @@ for name in dem/utils.hpp app/string_utils.cpp model/common.hpp tests/helpers.hp
   expect check_files.sh "$name: name it after"
 done
 
+# sow_text PAGE TEXT PATTERN: adds a line to a page.
+sow_text() {
+  clean_tree
+  printf '%s\n' "$2" >>"$tree/$1"
+  expect check_docs.sh "$3"
+}
+sow_text README.md 'and `dem/no_such_file.hpp`' 'README.md: names dem/no_such_file.hpp'
+sow_text README.md 'and `tests/run.sh --full`' 'names tests/run.sh'
+sow_text README.md $'and `over the end\nmodel/of_a_line.hpp`' 'names model/of_a_line.hpp'
+sow_text docs/page.md $'```sh\nexamples/none/run.sh OUT\n```' 'docs/page.md: names examples/none/run.sh'
+sow_text docs/theory/index.md '`predict/*.hpp`' 'names predict/*.hpp'
+sow_text docs/theory/index.md '[law](law.md)' 'docs/theory/index.md: links to law.md'
+clean_tree
+echo '`law.G`' >"$tree/docs/theory/index.md"
+expect check_docs.sh 'leaves out `stress_xx[Pa]`'
+clean_tree
+echo '`stress_xx[Pa]`' >"$tree/docs/theory/index.md"
+expect check_docs.sh 'leaves out `law.G`'
+
 rm -rf "${tree:?}"/*
 expect check_includes.sh '0 files'
+expect check_docs.sh '0 pages'
 expect check_files.sh '0 files'
 
 printf '%d failures\n' "$failures"
