@@ -3,7 +3,7 @@
 // whose pull Huber's loss holds do not bend it (p_i: Solution::pull_slope).
 //   S = sum_i w_i^2 (misfit_i d2 misfit_i/dx2 - (1 - p_i) d misfit_i/dx d misfit_i/dx)
 // Without it the error of a parameter of a law that does not hold exactly comes out wrong: those of Eq. (20) for the rates of
-// Eq. (16) were 1.6 times too large on data with memory (docs/validation.md).
+// Eq. (16) were 1.6 times too large on data with memory (docs/validation-log.md).
 
 #include "fit/statistics/least_squares.hpp"
 

@@ -10,7 +10,7 @@ failures=0
 
 clean_tree() {
   rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests,fit,predict,app,tests/unit}
+  mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests,dem/runs,fit,predict,chain,app,tests/unit}
   echo '#include <Eigen/Core>' >"$tree/model/vocabulary/tensor.hpp"
   echo '#include "model/vocabulary/tensor.hpp"' >"$tree/model/vocabulary/path.hpp"
   echo '#include "model/vocabulary/path.hpp"' >"$tree/model/files/path_file.hpp"
@@ -23,8 +23,10 @@ clean_tree() {
   printf '#include "model/law.hpp"\n#include <ceres/ceres.h>\n' >"$tree/fit/calibrate.cpp"
   printf '#include "model/law.hpp"\n' >"$tree/fit/calibrate.hpp"
   printf '#include "model/law.hpp"\n#include <cvodes/cvodes.h>\n' >"$tree/predict/predict.cpp"
-  printf '#include "fit/calibrate.hpp"\n#include "dem/engine/packing.hpp"\n#include <grainlaw_build_info.hpp>\n' \
-    >"$tree/app/commands.cpp"
+  echo '#include "dem/element_tests/drive.hpp"' >"$tree/dem/runs/runs.hpp"
+  echo '#include <grainlaw_build_info.hpp>' >"$tree/model/files/provenance.cpp"
+  printf '#include "fit/calibrate.hpp"\n#include "dem/runs/runs.hpp"\n' >"$tree/chain/calibration.hpp"
+  printf '#include "chain/calibration.hpp"\n#include "dem/engine/packing.hpp"\n' >"$tree/app/commands.cpp"
   seq 400 | sed 's|^|// |' >"$tree/tests/unit/tensor_test.cpp"
   mkdir -p "$tree/docs/theory"
   printf 'See `model/law.hpp`, `dem/engine/packing`, `fit/*.hpp` and `tests/unit/tensor_test.cpp --all`.\n' >"$tree/README.md"
@@ -73,6 +75,9 @@ sow fit/calibrate.cpp '"predict/predict.hpp"' 'fit must not include predict'
 sow predict/predict.cpp '"fit/calibrate.hpp"' 'predict must not include fit'
 sow fit/calibrate.cpp '"dem/engine/packing.hpp"' 'fit must not include dem'
 sow fit/calibrate.hpp '"app/commands.hpp"' 'fit must not include app'
+sow fit/calibrate.hpp '"chain/calibration.hpp"' 'fit must not include chain'
+sow chain/calibration.hpp '"app/commands.hpp"' 'chain must not include app'
+sow dem/element_tests/drive.hpp '"dem/runs/runs.hpp"' 'dem/element_tests must not include dem/runs'
 sow fit/calibrate.hpp '<ceres/ceres.h>' 'belongs to fit/*.cpp only'
 sow predict/predict.cpp '<ceres/ceres.h>' 'belongs to fit/*.cpp only'
 sow app/commands.cpp '<cvodes/cvodes.h>' 'belongs to predict/*.cpp only'
