@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# check_docs.sh ROOT: fails when a page names a file that is not there, or when docs/theory/index.md leaves out a parameter of
-# the law or a column of a series that docs/formats.md lists. A name is a word of `code` or of a fenced block that begins with a
+# check_docs.sh ROOT: fails when a page names a file that is not there, when a source names a section of docs/theory that is not
+# there, or when docs/theory/index.md leaves out a parameter of the law or a column of a series that docs/formats.md lists. A name is a word of `code` or of a fenced block that begins with a
 # room; a file's stem stands for its .hpp or .cpp, a pattern for at least one file. So do links to files of the tree. The
 # decisions and the logs speak of their own time and are not read.
 set -euo pipefail
@@ -55,6 +55,18 @@ check_index() {
   done < <(keys_of parameters; keys_of 'series columns' | grep -vE '_(yy|zz|yz|xz|xy)(\[|$)')
 }
 
+# Of comments like "docs/theory/fit.md, sections Covariance over packings and Degrees of freedom", over the end of a line, too.
+check_sections() { # source
+  local page sections section
+  while IFS=: read -r page sections; do
+    while IFS= read -r section; do
+      [[ -f $root/$page ]] && grep -qxF "## $section" "$root/$page" ||
+        report "${1#"$root"/}" "names section \"$section\" of $page, which does not exist"
+    done < <(sed -E 's/, | and /\n/g' <<<"$sections")
+  done < <(sed -E 's#^[^"]*//[/<]* *##; t; s/.*/./' "$1" | tr '\n' ' ' | grep -oE 'docs/theory/[a-z]+\.md, sections? [^.;:)]*' |
+    sed -E 's/, sections? /:/; s/ +$//' || true)
+}
+
 pages=0
 for page in "$root"/README.md "$root"/CONTRIBUTING.md "$root"/docs/*.md "$root"/docs/theory/*.md; do
   [[ -f $page && $page != *-log.md ]] || continue
@@ -63,6 +75,11 @@ for page in "$root"/README.md "$root"/CONTRIBUTING.md "$root"/docs/*.md "$root"/
   check_links "$page"
 done
 check_index
+while IFS= read -r source; do
+  check_sections "$source"
+done < <(for room in ${rooms//|/ }; do
+  [[ -d $root/$room ]] && grep -rl --include='*.[hc]pp' 'docs/theory/' "$root/$room" || true
+done)
 
 printf '%d pages, %d violations\n' "$pages" "$violations"
 ((pages > 0 && violations == 0))

@@ -37,7 +37,8 @@ clean_tree() {
   printf '```sh\nfit/calibrate.cpp # [index](theory/index.md)\n```\n[index](theory/index.md#here)\n' >"$tree/docs/page.md"
   printf '<!-- begin %s -->\n| key |\n|---|\n| `%s` | x |\n<!-- end %s -->\n' parameters law.G parameters \
     'series columns' 'stress_xx[Pa]' 'series columns' >"$tree/docs/formats.md"
-  printf '`law.G` `stress_xx[Pa]`\n' >"$tree/docs/theory/index.md"
+  printf '`law.G` `stress_xx[Pa]`\n## Wide weights\n## Ends\n' >"$tree/docs/theory/index.md"
+  printf '// Formulas: docs/theory/index.md, sections Wide\n// weights and Ends.\n' >>"$tree/fit/calibrate.hpp"
 }
 
 # expect CHECK PATTERN: CHECK must fail and name the PATTERN.
@@ -120,6 +121,7 @@ sow_text README.md $'and `over the end\nmodel/of_a_line.hpp`' 'names model/of_a_
 sow_text docs/page.md $'```sh\nexamples/none/run.sh OUT\n```' 'docs/page.md: names examples/none/run.sh'
 sow_text docs/theory/index.md '`predict/*.hpp`' 'names predict/*.hpp'
 sow_text docs/theory/index.md '[law](law.md)' 'docs/theory/index.md: links to law.md'
+sow_text fit/calibrate.hpp '// docs/theory/index.md, section Loss.' 'fit/calibrate.hpp: names section "Loss" of docs/theory/index.md'
 clean_tree
 echo '`law.G`' >"$tree/docs/theory/index.md"
 expect check_docs.sh 'leaves out `stress_xx[Pa]`'
