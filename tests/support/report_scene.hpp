@@ -116,9 +116,9 @@ inline predict::Prediction predicted_at(const TestRecord& test, const LawParamet
   return prediction;
 }
 
-inline app::PredictionFolder make_prediction(const std::string& name, double nu, const LawParameters<double>& p,
+inline predict::PredictionFolder make_prediction(const std::string& name, double nu, const LawParameters<double>& p,
                                              std::mt19937_64& generator) {
-  app::PredictionFolder folder;
+  predict::PredictionFolder folder;
   folder.name = name;
   folder.dem.emplace();
   for (const std::uint64_t seed : {11u, 12u}) {
@@ -127,13 +127,13 @@ inline app::PredictionFolder make_prediction(const std::string& name, double nu,
     fill_rows(test, p, 150, generator);
     for (const Rung model : {Rung::reduced, Rung::evolution}) {
       const std::string file = to_string(model) + "-law-seed" + std::to_string(seed) + ".csv";
-      folder.curves.push_back({model, app::Initial::law, seed, file, predicted_at(test, p, model)});
+      folder.curves.push_back({model, predict::Initial::law, seed, file, predicted_at(test, p, model)});
       predict::Comparison comparison{test.name, {}};
       for (const char* quantity : {"P_star", "s_par", "F_par"}) {
         comparison.quantities.push_back({quantity, 300, -0.0012, 0.0034, 0.028, -0.009, 0.12, 0.78});
       }
-      folder.comparisons.push_back({model, app::Initial::law, seed, comparison});
-      if (seed == 12) folder.comparisons.push_back({model, app::Initial::law, std::nullopt, comparison});
+      folder.comparisons.push_back({model, predict::Initial::law, seed, comparison});
+      if (seed == 12) folder.comparisons.push_back({model, predict::Initial::law, std::nullopt, comparison});
     }
     folder.path = test.path;
     folder.dem->tests.push_back({std::move(test), "", "", {}, {}});

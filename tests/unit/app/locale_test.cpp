@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "model/parameters_file.hpp"
+#include "fit/calibrate.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/series_columns.hpp"
 #include "model/files/series_csv.hpp"

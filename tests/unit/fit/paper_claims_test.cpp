@@ -99,7 +99,7 @@ TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
     tests.push_back(shear(Mode::D2, Branch::loading, seed, c + 0.01 + j, c + 0.2 + j, 0.020, 0.018, 0.17, 0.13));
     tests.push_back(shear(Mode::D3, Branch::unloading, seed, c, c + 0.2, 0.016, 0.018, 0.17 + j, 0.12 + j));
   }
-  const std::vector<Claim> claims = claims_of(tests, nothing_known(), {}, kSteadyFrom);
+  const std::vector<Claim> claims = claims_of(tests, nothing_known().law, {}, kSteadyFrom);
   const Claim& before = find(claims, "C* before shear: loading branch above unloading branch");
   EXPECT_NEAR(before.ours, 0.010075, 1e-9);
   EXPECT_EQ(before.verdict, "agrees");

@@ -7,7 +7,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw {
 namespace {
 
 using testing::refusal;
@@ -89,4 +89,4 @@ TEST(CsvNumber, IsShortestAndExact) {
 }
 
 }  // namespace
-}  // namespace grainlaw::app
+}  // namespace grainlaw

@@ -8,7 +8,7 @@
 #include "model/student.hpp"
 #include "predict/bands.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::chain {
 namespace {
 
 /// The published law, of which packing c has moved parameter i by 1 % of its value times sin(i + 2 c).
@@ -32,16 +32,16 @@ fit::Calibration calibrated(int packings) {
 
 TEST(LawQuantities, ErrorsAreThoseOfTheParametersTimesTheSlope) {
   const fit::Calibration c = calibrated(3);
-  const auto quantities = chain::law_quantities(c, {0.70, 0.80}, 3);
+  const auto quantities = law_quantities(c, {0.70, 0.80}, 3);
   ASSERT_EQ(quantities.size(), 13u);
   EXPECT_EQ(quantities[0].name, "P_star@0.70");
   EXPECT_EQ(quantities[0].values(0), c.law.parameters.isotropic.P_star(0.70));
-  const chain::StudyQuantity& nu_c = quantities.back();
+  const StudyQuantity& nu_c = quantities.back();
   const auto row = static_cast<Eigen::Index>(parameter_index("pressure.nu_c"));
   EXPECT_FALSE(nu_c.in_error);
   EXPECT_NEAR((nu_c.influence - c.errors.influence.row(row)).norm(), 0, 1e-9);
   // s_max = Q_limit + Q_c exp(...): linear in these two; the third by its derivative
-  const chain::StudyQuantity& s_max = quantities[2];
+  const StudyQuantity& s_max = quantities[2];
   ASSERT_EQ(s_max.name, "s_max@0.70");
   const auto at = [&](const char* name) {
     return Eigen::RowVectorXd(c.errors.influence.row(static_cast<Eigen::Index>(parameter_index(name))));
@@ -58,7 +58,7 @@ TEST(LawQuantities, PredictionsHaveTheErrorOfTheirBands) {
   const fit::Calibration c = calibrated(4);
   const Path path{0.70, Branch::unloading, {{Mode::UNI, direction_of(Mode::UNI), ExtentKind::target_nu, 0.80}}};
   ASSERT_EQ(richest_rung(c.law), Rung::evolution);
-  const auto quantities = chain::predicted_quantities(c, path, Rung::evolution, 4, {});
+  const auto quantities = predicted_quantities(c, path, Rung::evolution, 4, {});
   const auto segments = resolve(path);
   predict::Prediction prediction = predict::predict(
       Rung::evolution, c.law.parameters, c.law.coupling, segments, predict::state_from_law(c.law.parameters, path.nu),
@@ -81,9 +81,9 @@ TEST(LawQuantities, WhatIsNotIdentifiedIsMissing) {
   EXPECT_EQ(richest_rung(c.law), Rung::reduced);
   c.law.estimates[parameter_index("fabric_rate.Q_c")].status = Status::not_identified;
   EXPECT_FALSE(richest_rung(c.law).has_value());
-  for (const chain::StudyQuantity& q : chain::law_quantities(c, {0.70}, 2))
+  for (const StudyQuantity& q : law_quantities(c, {0.70}, 2))
     EXPECT_EQ(std::isnan(q.values(0)), q.name == "beta_F@0.70") << q.name;
 }
 
 }  // namespace
-}  // namespace grainlaw::app
+}  // namespace grainlaw::chain

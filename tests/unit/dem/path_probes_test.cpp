@@ -13,7 +13,7 @@
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw::dem {
 namespace {
 
 namespace fs = std::filesystem;
@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 class PathProbesTest : public testing::TemporaryFolder {
  protected:
   PathProbesTest() : store_(folder_, "runs") {
-    dem::scene::Draw draw(3);
-    start_.given = dem::scene::random_state(60, 3, 0.74, dem::scene::cubic(1), draw);
+    scene::Draw draw(3);
+    start_.given = scene::random_state(60, 3, 0.74, scene::cubic(1), draw);
     start_.given_digest = "of the scene";
     start_.relax = true;
     start_.rows = 10;
@@ -36,13 +36,13 @@ class PathProbesTest : public testing::TemporaryFolder {
              {Mode::ISO, direction_of(Mode::ISO), ExtentKind::eps_vol, 0.015}}};
   }
 
-  fs::path run(const dem::TestStart& start, const Path& path, const dem::ResumePolicy& policy = {},
+  fs::path run(const TestStart& start, const Path& path, const ResumePolicy& policy = {},
                const RunControl& control = {}) {
-    return store_.folder(dem::ensure_test(store_, start, path, policy, control).at("key"));
+    return store_.folder(ensure_test(store_, start, path, policy, control).at("key"));
   }
 
-  dem::TestStart probed(dem::ProbePlan plan = {0.01, {1e-6}}) const {
-    dem::TestStart start = start_;
+  TestStart probed(ProbePlan plan = {0.01, {1e-6}}) const {
+    TestStart start = start_;
     start.probes = std::move(plan);
     return start;
   }
@@ -56,27 +56,27 @@ class PathProbesTest : public testing::TemporaryFolder {
     return values;
   }
 
-  dem::RunStore store_;
-  dem::TestStart start_;
+  RunStore store_;
+  TestStart start_;
 };
 
 TEST_F(PathProbesTest, DoNotDisturbTheRun) {
-  dem::scene::Draw draw(3);
+  scene::Draw draw(3);
   start_.given =
-      dem::scene::random_state(700, 3, 0.74, dem::scene::cubic(1), draw);  // wide enough for the vector engine
+      scene::random_state(700, 3, 0.74, scene::cubic(1), draw);  // wide enough for the vector engine
   start_.given_digest = "of the wide scene";
   const Path path{0.74, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.004}}};
-  for (const dem::Precision precision : {dem::Precision::mixed, dem::Precision::full, dem::Precision::reference}) {
+  for (const Precision precision : {Precision::mixed, Precision::full, Precision::reference}) {
     start_.preparation.engine.precision = precision;
     const fs::path without = run(start_, path), with = run(probed({0.002, {1e-6}}), path);
     EXPECT_NE(without, with);
     EXPECT_FALSE(fs::exists(without / "probes.csv"));
     EXPECT_EQ(column(with, "B_star").size(), 3u);
     EXPECT_EQ(content(without / "series.csv"), content(with / "series.csv"));
-    dem::State a = dem::read_state(without / "end.state"), b = dem::read_state(with / "end.state");
+    State a = read_state(without / "end.state"), b = read_state(with / "end.state");
     a.digest = b.digest;
-    dem::write_state(folder_ / "a", a);
-    dem::write_state(folder_ / "b", b);
+    write_state(folder_ / "a", a);
+    write_state(folder_ / "b", b);
     EXPECT_EQ(content(folder_ / "a"), content(folder_ / "b"));
   }
 }
@@ -104,13 +104,13 @@ TEST_F(PathProbesTest, AreWhereThePathHasGrown) {
 }
 
 TEST_F(PathProbesTest, SurviveInterruptions) {
-  const dem::TestStart start = probed();
+  const TestStart start = probed();
   const std::string expected = content(run(start, shear_then_compress()) / "probes.csv");
-  const fs::path folder = store_.folder(dem::run_key(dem::test_request(start, shear_then_compress())));
+  const fs::path folder = store_.folder(run_key(test_request(start, shear_then_compress())));
   const auto interrupted_after = [&](int probes) {
     fs::remove(folder / "run.json");
-    for (int reports = 0; !fs::exists(folder / dem::kProgress) ||
-                          content(folder / dem::kProgress).find(fmt::format("\"places\": {}", probes)) == std::string::npos;
+    for (int reports = 0; !fs::exists(folder / kProgress) ||
+                          content(folder / kProgress).find(fmt::format("\"places\": {}", probes)) == std::string::npos;
          ++reports) {
       std::stop_source stop;
       int seen = 0;
@@ -126,9 +126,9 @@ TEST_F(PathProbesTest, SurviveInterruptions) {
   EXPECT_EQ(content(run(start, shear_then_compress()) / "probes.csv"), expected);
 
   interrupted_after(1);
-  std::string damaged = content(folder / dem::kProgress);
+  std::string damaged = content(folder / kProgress);
   damaged[damaged.find("rows") + 40] ^= 1;
-  std::ofstream(folder / dem::kProgress, std::ios::binary) << damaged;
+  std::ofstream(folder / kProgress, std::ios::binary) << damaged;
   std::vector<std::string> log;
   run(start, shear_then_compress(), {true, 60, [&](const std::string& text) { log.push_back(text); }});
   EXPECT_EQ(content(folder / "probes.csv"), expected);
@@ -148,8 +148,8 @@ TEST_F(PathProbesTest, WithoutShearAndWithoutSegments) {
 }
 
 TEST_F(PathProbesTest, WithoutLoadMakeEmptyFields) {
-  dem::scene::Draw draw(3);
-  start_.given = dem::scene::random_state(20, 3, 0.2, dem::scene::cubic(1), draw);
+  scene::Draw draw(3);
+  start_.given = scene::random_state(20, 3, 0.2, scene::cubic(1), draw);
   start_.given_digest = "loose";
   const fs::path folder = run(probed(), {0.2, Branch::unloading, {}});
   EXPECT_TRUE(std::isnan(column(folder, "B_star").at(0)));
@@ -158,4 +158,4 @@ TEST_F(PathProbesTest, WithoutLoadMakeEmptyFields) {
 }
 
 }  // namespace
-}  // namespace grainlaw::app
+}  // namespace grainlaw::dem

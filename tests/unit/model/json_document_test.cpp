@@ -5,7 +5,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace grainlaw::app {
+namespace grainlaw {
 namespace {
 
 using testing::refusal;
@@ -111,4 +111,4 @@ TEST_F(JsonFile, IsRefusedWhenAbsentAFolderOrTooLarge) {
 }
 
 }  // namespace
-}  // namespace grainlaw::app
+}  // namespace grainlaw
