@@ -16,18 +16,9 @@
 #include "model/vocabulary/path.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "model/vocabulary/test_record.hpp"
+#include "predict/solvers/ode.hpp"
 
 namespace grainlaw::predict {
-
-enum class Model { reduced, evolution };
-enum class Method { adams, bdf };
-
-struct Tolerances {
-  double relative = 1e-8;         ///< of each unknown, in [1e-14, 1) [-]
-  double absolute = 1e-12;        ///< on P*, sigma'*, F', not negative [-]
-  Method method = Method::adams;  ///< how CVODE steps
-  long max_steps = 100000;        ///< internal steps per output interval
-};
 
 /// Where an output is wanted: a segment of the path and the path parameter in it, both not decreasing.
 struct OutputPoint {
@@ -71,12 +62,6 @@ struct PathEvent {
   EventKind kind = EventKind::unjammed;
   OutputPoint at;  ///< segment and path parameter
   double nu = 0;   ///< volume fraction there [-]
-};
-
-struct SolverStatistics {
-  long steps = 0, rhs_evaluations = 0, error_test_failures = 0, nonlinear_iterations = 0;  ///< of all segments
-  long restarts = 0;   ///< initialisations, one for each segment entered and each event in it
-  double seconds = 0;  ///< wall time of the integration [s]
 };
 
 /// Whose influence on the rows is wanted; nobody's by default, which costs nothing.
