@@ -8,7 +8,7 @@
 
 #include "app/files/json_document.hpp"
 #include "app/files/probe_json.hpp"
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 
 namespace grainlaw::app {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <set>
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::app {

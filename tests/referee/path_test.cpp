@@ -23,7 +23,7 @@
 #include <numbers>
 
 #include "dem/engine/averages.hpp"
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "tests/referee/lammps.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"

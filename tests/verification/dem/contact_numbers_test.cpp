@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/engine/averages.hpp"
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "dem/engine/reference.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_contact_statistics.hpp"

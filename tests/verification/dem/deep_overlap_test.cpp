@@ -8,7 +8,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "dem/engine/reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "model/vocabulary/error.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dem/engine/averages.hpp"
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "dem/engine/lanes/lane_pass.hpp"
 #include "dem/engine/lanes/lane_state.hpp"
 #include "dem/engine/reference.hpp"

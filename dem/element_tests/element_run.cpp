@@ -1,4 +1,4 @@
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "dem/engine/averages.hpp"
 #include "dem/engine/energy_account.hpp"
 #include "dem/element_tests/path_row.hpp"
-#include "dem/element_tests/quasi_static_test.hpp"
+#include "dem/element_tests/quasi_static.hpp"
 #include "dem/engine/run_watch.hpp"
 
 namespace grainlaw::dem {

@@ -1,12 +1,12 @@
 #pragma once
 // An element test without dynamics: the cell is deformed in small affine steps, each followed by a minimisation of the
 // elastic energy at fixed cell (athermal quasi-static shear, e.g. Maloney and Lemaître, Phys. Rev. E 74, 016118 (2006)). It
-// is the limit of vanishing rate of dem/element_tests/element_test.hpp, but for which minimum of several a packing falls into.
+// is the limit of vanishing rate of dem/element_tests/element_run.hpp, but for which minimum of several a packing falls into.
 //   H_k = exp(e_k D) H_0, e_k = k length/steps, spheres move with the cell, then dem/statics/relax.hpp
 //   W_box grows by the change of elastic energy in the affine step, D_contact by what the minimisation takes
 // Spheres are at rest in every row, the inertial number is 0, and time is that of a constant strain_rate, for the name only.
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 
 namespace grainlaw::dem {
 

@@ -1,4 +1,4 @@
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
