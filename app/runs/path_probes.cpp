@@ -9,7 +9,6 @@
 #include "app/files/probe_columns.hpp"
 #include "app/runs/run_store.hpp"
 #include "model/files/durable_file.hpp"
-#include "dem/element_tests/path_row.hpp"
 #include "dem/statics/probe_rows.hpp"
 #include "model/vocabulary/error.hpp"
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "dem/element_tests/element_run.hpp"
+#include "dem/element_tests/energy_watch.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::app {

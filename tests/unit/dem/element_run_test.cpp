@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "dem/element_tests/energy_watch.hpp"
 #include "dem/statics/relax.hpp"
 #include "dem/files/state_file.hpp"
 #include "model/vocabulary/error.hpp"
