@@ -120,7 +120,6 @@ class ElementRun {
   }
 
   void take_row(const StraightSegment& on, double e) {
-    synchronise(stepper_->simulation());
     at_.rows.push_back(observe(stepper_->simulation(), stepper_->motion(), N_));
     fill_path(at_.rows.back(), on, at_.segment, e, sheared_);
     stepper_->judge(at_.rows.back(), at_.rows.front(), at_.rows.size() - 1, at_.segment);

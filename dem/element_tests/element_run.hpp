@@ -36,8 +36,7 @@ struct ElementTest {
                                       ///< stopped short; for the log
 };
 
-/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state, for which it
-/// calls synchronise() first. After a continuation it sees the checkpoint's step once more.
+/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state. After a continuation it sees the checkpoint's step once more.
 using StepObserver = std::function<void(Simulation&, int segment, double e)>;
 
 /// Runs `segments` (resolve() of the path at the state's own volume fraction) from `start`; time, step and ledger begin

@@ -79,7 +79,7 @@ class QuasiStaticStepper : public Stepper {
   double time_step() const override { return 0; }
 
   Simulation& simulation() override {
-    if (!seen_) seen_ = start_simulation(state_, for_sums_, motion());
+    if (!seen_) seen_.emplace(state_, for_sums_, motion());
     return *seen_;
   }
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "dem/element_tests/energy_watch.hpp"
-#include "dem/engine/energy_account.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -23,11 +23,10 @@ State fresh(State state) {
 }
 
 /// Forces for a velocity gradient that has jumped.
-Simulation restarted(Simulation sim, const CellMotion& motion) {
-  synchronise(sim);
-  State state = std::move(sim.state);
+Simulation restarted(Simulation& sim, const CellMotion& motion) {
+  State state = sim.take_state();
   for (auto* a : {&state.ax, &state.ay, &state.az}) a->clear();
-  return start_simulation(std::move(state), sim.options, motion);
+  return Simulation(std::move(state), sim.options(), motion);
 }
 
 class TimeStepper : public Stepper {
@@ -39,7 +38,7 @@ class TimeStepper : public Stepper {
     CellMotion motion{state.packing.H, Eigen::Matrix3d::Zero(), options_.drive.transport};
     if (!segments_.empty()) motion = motion_at(make_drive(segments_[0], options_.drive, state.packing.H), 0);
     start_engine(fresh(state), motion);
-    open_ledger(sim_);
+    sim_->open_ledger();
   }
 
   void resume(State state, std::uint64_t steps) override {
@@ -50,7 +49,7 @@ class TimeStepper : public Stepper {
   }
 
   std::uint64_t steps_of(int segment) const override {
-    return steps_along(make_drive(segments_[static_cast<std::size_t>(segment)], options_.drive, sim_.state.packing.H));
+    return steps_along(make_drive(segments_[static_cast<std::size_t>(segment)], options_.drive, sim_->cell()));
   }
 
   void enter(int segment, const Eigen::Matrix3d& H_0, std::uint64_t done) override {
@@ -58,14 +57,14 @@ class TimeStepper : public Stepper {
     steps_of_drive_ = steps_along(drive_);
     done_ = done;
     const double dt = drive_.duration / static_cast<double>(steps_of_drive_);
-    if (segment > 0 && done == 0) sim_ = restarted(std::move(sim_), motion_at(drive_, 0));
-    sim_.dt = dt;
+    if (segment > 0 && done == 0) sim_ = restarted(*sim_, motion_at(drive_, 0));
+    sim_->set_dt(dt);
     place_ = path_parameter(drive_, time_after(done));
   }
 
   void step() override {
     motion_ = motion_at(drive_, time_after(done_ + 1));
-    advance(sim_, motion_at(drive_, (static_cast<double>(done_) + 0.5) * sim_.dt), motion_);
+    sim_->advance(motion_at(drive_, (static_cast<double>(done_) + 0.5) * sim_->dt()), motion_);
     ++done_;
     ++steps_;
     place_ = path_parameter(drive_, time_after(done_));
@@ -80,14 +79,11 @@ class TimeStepper : public Stepper {
 
   double fraction_done() const override { return static_cast<double>(steps_) / steps_of_path_; }
   std::uint64_t steps() const override { return steps_; }
-  double time_step() const override { return sim_.dt; }
-  Simulation& simulation() override { return sim_; }
+  double time_step() const override { return sim_->dt(); }
+  Simulation& simulation() override { return *sim_; }
   CellMotion motion() const override { return motion_; }
 
-  const State& state() override {
-    synchronise(sim_);
-    return sim_.state;
-  }
+  const State& state() override { return sim_->state(); }
 
   void judge(const Observation& row, const Observation& first, std::size_t index, int segment) override {
     const double residual = energy_.residual(row, first);
@@ -111,8 +107,8 @@ class TimeStepper : public Stepper {
  private:
   void start_engine(State state, const CellMotion& motion) {
     motion_ = motion;
-    sim_ = start_simulation(std::move(state), options_.engine, motion);
-    engine_dt_ = sim_.dt;
+    sim_.emplace(std::move(state), options_.engine, motion);
+    engine_dt_ = sim_->dt();
     for (std::size_t k = 0; k < segments_.size(); ++k) {
       steps_of_path_ += static_cast<double>(steps_of(static_cast<int>(k)));
     }
@@ -129,13 +125,13 @@ class TimeStepper : public Stepper {
 
   /// Since the start of the segment, after so many of its steps [s].
   double time_after(std::uint64_t steps) const {
-    return steps == steps_of_drive_ ? drive_.duration : static_cast<double>(steps) * sim_.dt;
+    return steps == steps_of_drive_ ? drive_.duration : static_cast<double>(steps) * sim_->dt();
   }
 
   const std::vector<StraightSegment>& segments_;
   const ElementTestOptions& options_;
-  Simulation sim_;
-  double engine_dt_ = 0;  // the largest that a step may have [s]
+  std::optional<Simulation> sim_;  // once the run has begun
+  double engine_dt_ = 0;           // the largest that a step may have [s]
   double steps_of_path_ = 0;
   std::uint64_t steps_ = 0;           // taken since the start of the test
   Drive drive_;                       // along this segment

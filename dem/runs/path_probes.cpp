@@ -61,8 +61,7 @@ StepObserver PathProbes::observer() {
     const auto index = static_cast<std::size_t>(segment);
     const double length = length_before(index) + length_rate(segments_[index]) * e;
     if (length < plan_.every * static_cast<double>(done_) - kRounding) return;
-    synchronise(sim);
-    probe(sim.state, segment, e);
+    probe(sim.state(), segment, e);
     save();
   };
 }
