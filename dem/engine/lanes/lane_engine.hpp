@@ -7,8 +7,8 @@
 #include <variant>
 
 #include "dem/engine/contacts.hpp"
-#include "dem/engine/lanes/lane_list.hpp"
 #include "dem/engine/lanes/lane_pass.hpp"
+#include "dem/engine/lanes/lane_state.hpp"
 #include "dem/engine/stepping.hpp"
 
 namespace grainlaw::dem {
