@@ -12,22 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "model/law.hpp"
+#include "model/calibrated_law.hpp"
 #include "model/vocabulary/path.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "model/vocabulary/test_record.hpp"
+#include "predict/solvers/ode.hpp"
 
 namespace grainlaw::predict {
-
-enum class Model { reduced, evolution };
-enum class Method { adams, bdf };
-
-struct Tolerances {
-  double relative = 1e-8;         ///< of each unknown, in [1e-14, 1) [-]
-  double absolute = 1e-12;        ///< on P*, sigma'*, F', not negative [-]
-  Method method = Method::adams;  ///< how CVODE steps
-  long max_steps = 100000;        ///< internal steps per output interval
-};
 
 /// Where an output is wanted: a segment of the path and the path parameter in it, both not decreasing.
 struct OutputPoint {
@@ -73,12 +64,6 @@ struct PathEvent {
   double nu = 0;   ///< volume fraction there [-]
 };
 
-struct SolverStatistics {
-  long steps = 0, rhs_evaluations = 0, error_test_failures = 0, nonlinear_iterations = 0;  ///< of all segments
-  long restarts = 0;   ///< initialisations, one for each segment entered and each event in it
-  double seconds = 0;  ///< wall time of the integration [s]
-};
-
 /// Whose influence on the rows is wanted; nobody's by default, which costs nothing.
 struct Sensitivity {
   std::vector<std::size_t> parameters;  ///< indices in parameter_table()
@@ -103,12 +88,6 @@ struct Prediction {
   std::vector<std::string> warnings;  ///< e.g. "nu = 0.85 lies outside the calibrated range 0.68-0.82"
 };
 
-/// Calibrated ranges, for the warnings: one for each way in which a prediction leaves them, and one where it unjams.
-struct ValidRange {
-  double nu_min = 0, nu_max = 1;  ///< volume fraction [-]
-  double eps_dev_max = 1e300;     ///< deviatoric strain from the start of a test [-]
-};
-
 /// P by Eq. (14), ISO unloading branch, at `nu`; no deviators. Throws InvalidInput when nu is not above jamming.
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu);
 
@@ -116,7 +95,7 @@ LawState<double> state_from_law(const LawParameters<double>& parameters, double 
 LawState<double> state_from_row(const Observation& row);
 
 /// The rows at `points` of the path `segments`, beginning at `start`. `coupling` and `tolerances` are not read by the
-/// reduced model. Throws InvalidInput for a start that is not jammed or points off the path; NotConverged with segment,
+/// reduced model. Warns once for each way in which the rows leave `range`. Throws InvalidInput for a start that is not jammed or points off the path; NotConverged with segment,
 /// strain and the solver's word when the solver fails, when y is not finite or t differs from the requested output;
 /// Interrupted.
 Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling coupling,
