@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "dem/statics/relax.hpp"
 
 namespace grainlaw::dem {

@@ -9,7 +9,6 @@
 #include "model/files/probe_columns.hpp"
 #include "dem/runs/run_store.hpp"
 #include "model/files/durable_file.hpp"
-#include "dem/element_tests/path_row.hpp"
 #include "dem/statics/probe_rows.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -62,8 +61,7 @@ StepObserver PathProbes::observer() {
     const auto index = static_cast<std::size_t>(segment);
     const double length = length_before(index) + length_rate(segments_[index]) * e;
     if (length < plan_.every * static_cast<double>(done_) - kRounding) return;
-    synchronise(sim);
-    probe(sim.state, segment, e);
+    probe(sim.state(), segment, e);
     save();
   };
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/element_tests/quasi_static_test.hpp"
+#include "dem/element_tests/quasi_static.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
