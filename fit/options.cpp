@@ -8,8 +8,6 @@
 
 namespace grainlaw::fit {
 
-std::string to_string(Loss loss) { return loss == Loss::huber ? "huber" : "squares"; }
-
 void check(const CalibrationOptions& options) {
   const auto positive = [](double value, const char* field) {
     if (!(std::isfinite(value) && value > 0)) {

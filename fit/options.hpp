@@ -1,8 +1,6 @@
 #pragma once
 // Choices of a calibration. Fit windows: equations.md 0.
 
-#include <string>
-
 #include "model/parameters.hpp"
 
 namespace grainlaw::fit {
@@ -11,8 +9,7 @@ enum class Loss {
   squares,  ///< of the misfits
   huber,    ///< rows that are far off count by their distance, robust.hpp
 };
-
-std::string to_string(Loss loss);
+constexpr auto names_of(Loss) { return std::array{"squares", "huber"}; }
 
 struct CalibrationOptions {
   Coupling coupling = Coupling::energy;

@@ -20,7 +20,7 @@ enum class Status {
   at_bound,        ///< ended on a physical bound; no standard error
   not_identified,  ///< the data do not contain it; no value and no standard error
 };
-std::string to_string(Status status);
+constexpr auto names_of(Status) { return std::array{"fitted", "fixed", "tied", "at_bound", "not_identified"}; }
 
 struct Estimate {
   double value = 0;                    ///< not to be read when not identified

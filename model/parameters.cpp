@@ -4,15 +4,6 @@
 
 namespace grainlaw {
 
-std::string to_string(Coupling coupling) { return coupling == Coupling::energy ? "energy" : "single"; }
-
-Coupling coupling_of(const std::string& name) {
-  for (const Coupling coupling : {Coupling::energy, Coupling::single}) {
-    if (name == to_string(coupling)) return coupling;
-  }
-  throw InvalidInput("coupling: is neither energy nor single");
-}
-
 const std::array<ParameterInfo, kParameterCount>& parameter_table() {
   constexpr auto none = std::nullopt;
   // Starting values are round numbers of the right order, deliberately off the published ones. alpha of Eq. (20) stays

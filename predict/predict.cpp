@@ -150,18 +150,6 @@ std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, cons
   return warnings;
 }
 
-std::string to_string(EventKind kind) {
-  switch (kind) {
-    case EventKind::unjammed:
-      return "unjammed";
-    case EventKind::jammed:
-      return "jammed";
-    case EventKind::tension:
-      break;
-  }
-  return "tension";
-}
-
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {
   LawState<double> state{parameters.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
   check_start(parameters, nu, state);

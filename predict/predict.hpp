@@ -65,7 +65,7 @@ struct PredictedRow {
 
 /// What happens on the way besides corners; see path_integration.hpp.
 enum class EventKind { unjammed, jammed, tension };
-std::string to_string(EventKind kind);
+constexpr auto names_of(EventKind) { return std::array{"unjammed", "jammed", "tension"}; }
 
 struct PathEvent {
   EventKind kind = EventKind::unjammed;

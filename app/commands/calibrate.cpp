@@ -62,7 +62,7 @@ void log_warnings(const Dataset& dataset, Session& session) {
   }
   if (tests > 0)
     session.watch.log(fmt::format("warning: {} of {} tests have warnings (listed in dataset.json), e.g. {}", tests,
-                                     dataset.tests.size(), first));
+                                  dataset.tests.size(), first));
 }
 
 std::string summary_of(const fs::path& output, const Dataset& dataset, bool converged, const RunCounts& counts,
@@ -153,7 +153,8 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   fit_options.loss = options.loss;
   fit_options.starts = options.starts;
   fit_options.profiles = options.checks;
-  fit_options.coupling = options.coupling.value_or(spec ? coupling_of(spec->coupling) : Coupling::energy);
+  fit_options.coupling =
+      options.coupling.value_or(spec ? value_of<Coupling>(spec->coupling, "coupling") : Coupling::energy);
   if (spec) spec->coupling = to_string(fit_options.coupling);
 
   const std::optional<PrecisionTarget> target =

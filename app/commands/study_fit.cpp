@@ -37,8 +37,8 @@ FitChoice everything_in(const std::filesystem::path& folder, int threads) {
     throw InvalidInput(fmt::format("{}: one packing has no scatter; give a data set of two or more", folder.string()));
   choice.options.threads = threads;
   if (!choice.dataset.spec.is_null())
-    choice.options.coupling =
-        coupling_of(spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling);
+    choice.options.coupling = value_of<Coupling>(
+        spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling, "coupling");
   return choice;
 }
 

@@ -60,7 +60,7 @@ PackingInfo packing_from(const Json& object) {
 DatasetTest read_test(const Json& object, const fs::path& folder, const std::string& index, const std::string& place) {
   DatasetTest test;
   test.record.name = object["name"];
-  test.record.role = role_from(object["role"]);
+  test.record.role = value_of<Role>(object["role"].get<std::string>(), "role");
   test.record.path = path_from_json(object["path"], index, place + ".path.", true);
   test.record.packing = packing_from(object["packing"]);
   const fs::path file = folder / (test.record.name + ".csv");

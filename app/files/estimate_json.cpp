@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,16 +9,6 @@
 
 namespace grainlaw::app {
 namespace {
-
-constexpr std::array kStatuses{fit::Status::fitted, fit::Status::fixed, fit::Status::tied, fit::Status::at_bound,
-                               fit::Status::not_identified};
-
-fit::Status status_from(const std::string& text) {
-  for (const fit::Status status : kStatuses) {
-    if (to_string(status) == text) return status;
-  }
-  throw InvalidInput(fmt::format("status: '{}' is not known", text));
-}
 
 /// Of files without the key, older ones: infinite, as if errors were exact.
 double degrees_of_freedom(const Json& object) {
@@ -44,7 +33,8 @@ OrderedJson estimate_to_json(const fit::Estimate& estimate) {
 
 fit::Estimate estimate_from_json(const Json& object) {
   fit::Estimate estimate{number_or_nan(object.at("value")), number_or_nan(object.at("standard_error")),
-                         status_from(object.at("status")), object.value("note", ""), degrees_of_freedom(object)};
+                         value_of<fit::Status>(object.at("status").get<std::string>(), "status"),
+                         object.value("note", ""), degrees_of_freedom(object)};
   if ((estimate.status == fit::Status::not_identified) != std::isnan(estimate.value)) {
     throw InvalidInput(
         fmt::format("value: must be null exactly when the status is '{}'", to_string(fit::Status::not_identified)));

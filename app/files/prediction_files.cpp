@@ -25,8 +25,8 @@ OrderedJson head(Rung model, Initial initial, const std::optional<std::uint64_t>
 
 template <class Entry>
 void read_head(const Json& object, Entry& entry) {
-  entry.model = rung_of(object.at("model").get<std::string>());
-  entry.initial = object.at("initial") == to_string(Initial::measured) ? Initial::measured : Initial::law;
+  entry.model = value_of<Rung>(object.at("model").get<std::string>(), "model");
+  entry.initial = value_of<Initial>(object.at("initial").get<std::string>(), "initial");
   if (!object.at("seed").is_null()) entry.seed = object.at("seed").get<std::uint64_t>();
 }
 
@@ -42,7 +42,7 @@ OrderedJson curve_to_json(const PredictedCurve& curve) {
   OrderedJson& events = object["events"] = OrderedJson::array();
   for (const predict::PathEvent& event : curve.prediction.events) {
     events.push_back(
-        {{"kind", predict::to_string(event.kind)}, {"segment", event.at.segment}, {"e", event.at.e}, {"nu", event.nu}});
+        {{"kind", to_string(event.kind)}, {"segment", event.at.segment}, {"e", event.at.e}, {"nu", event.nu}});
   }
   object["warnings"] = curve.prediction.warnings;
   object["solver"] = {{"steps", s.steps},
@@ -67,10 +67,9 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
     curve.prediction.unjammed_at = {at.at("segment"), at.at("e")};
   }
   for (const Json& event : object.at("events")) {
-    for (const auto kind : {predict::EventKind::unjammed, predict::EventKind::jammed, predict::EventKind::tension}) {
-      if (event.at("kind") == predict::to_string(kind))
-        curve.prediction.events.push_back({kind, {event.at("segment"), event.at("e")}, event.at("nu")});
-    }
+    curve.prediction.events.push_back({value_of<predict::EventKind>(event.at("kind").get<std::string>(), "kind"),
+                                       {event.at("segment"), event.at("e")},
+                                       event.at("nu")});
   }
   curve.prediction.warnings = object.at("warnings").get<std::vector<std::string>>();
   const Json& s = object.at("solver");
@@ -102,10 +101,10 @@ OrderedJson comparison_to_json(const CurveComparison& entry) {
 
 /// The other way round of rung_to_json().
 void read_rung(const Json& object, PredictionFolder& content) {
-  content.needed = {rung_of(object.at("needed").get<std::string>()), object.at("why")};
+  content.needed = {value_of<Rung>(object.at("needed").get<std::string>(), "needed"), object.at("why")};
   for (const Json& change : object.at("changes")) {
-    content.changes.push_back({rung_of(change.at("from").get<std::string>()),
-                               rung_of(change.at("to").get<std::string>()),
+    content.changes.push_back({value_of<Rung>(change.at("from").get<std::string>(), "from"),
+                               value_of<Rung>(change.at("to").get<std::string>(), "to"),
                                {change.at("P_star"), change.at("stress_ratio"), change.at("fabric")}});
   }
 }
@@ -126,12 +125,10 @@ CurveComparison comparison_from_json(const Json& object) {
 
 }  // namespace
 
-std::string to_string(Initial initial) { return initial == Initial::law ? "law" : "measured"; }
-
 std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>& comparisons) {
   std::vector<CurveComparison> means;
   for (const Rung model : kRungs) {
-    for (const Initial initial : {Initial::law, Initial::measured}) {
+    for (const Initial initial : kValues<Initial>) {
       CurveComparison mean{model, initial, std::nullopt, {"mean", {}}};
       double seeds = 0;
       for (const CurveComparison& entry : comparisons) {

@@ -16,7 +16,7 @@
 namespace grainlaw::app {
 
 enum class Initial { law, measured };  ///< start of a prediction: the calibrated law, or the packing's measured values
-std::string to_string(Initial initial);
+constexpr auto names_of(Initial) { return std::array{"law", "measured"}; }
 
 /// The law along the path.
 struct PredictedCurve {

@@ -28,14 +28,6 @@ std::vector<StraightSegment> isotropic(double from, double to) {
       {from, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to < from), ExtentKind::target_nu, to}}});
 }
 
-const char* name_of(dem::Precision precision) {
-  switch (precision) {
-    case dem::Precision::full: return "double";
-    case dem::Precision::reference: return "reference";
-    default: return "mixed";
-  }
-}
-
 }  // namespace
 
 void read_preparation(const Json& document, dem::PreparationOptions& o) {
@@ -83,12 +75,12 @@ OrderedJson preparation_to_json(const dem::PreparationOptions& o) {
           {"background_viscosity", material.background_viscosity},
           {"time_step_fraction", o.engine.time_step_fraction},
           {"skin", o.engine.skin},
-          {"precision", name_of(o.engine.precision)},
+          {"precision", to_string(o.engine.precision)},
           {"portable_bits", o.engine.portable_bits},
           {"strain_rate", o.drive.strain_rate},
           {"quasi_static_step", o.drive.quasi_static_step},
-          {"driving", o.drive.profile == dem::Profile::constant ? "constant" : "cosine"},
-          {"transport", o.drive.transport == dem::Transport::wall ? "wall" : "homogeneous"},
+          {"driving", to_string(o.drive.profile)},
+          {"transport", to_string(o.drive.transport)},
           {"rows", o.rows},
           {"nu_start", o.nu_start},
           {"nu_max", o.nu_max},

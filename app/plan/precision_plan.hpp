@@ -37,8 +37,8 @@ struct SteadyScatter {
 };
 
 enum class Cause { strain_rate, time_step, size };
-inline constexpr std::array kCauses{Cause::strain_rate, Cause::time_step, Cause::size};
-std::string to_string(Cause cause);
+constexpr auto names_of(Cause) { return std::array{"strain_rate", "time_step", "size"}; }
+inline constexpr auto kCauses = kValues<Cause>;
 
 /// What shapes are relative to.
 struct Scale {

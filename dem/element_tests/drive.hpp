@@ -14,6 +14,7 @@
 namespace grainlaw::dem {
 
 enum class Profile { cosine, constant };
+constexpr auto names_of(Profile) { return std::array{"cosine", "constant"}; }
 
 struct DriveOptions {
   double strain_rate = 138;                      ///< peak of max(|eps_vol rate|, eps_dev rate) along a segment [1/s]

@@ -24,6 +24,7 @@ enum class Precision {
   reference,  ///< double, plain loops; also taken where the others do not fit: cells less than about five spheres
               ///< wide, sheared cells, wall-driven transport
 };
+constexpr auto names_of(Precision) { return std::array{"mixed", "double", "reference"}; }
 
 struct EngineOptions {
   double time_step_fraction = 0.1;  ///< dt/t_c,min of the actual packing [-]
@@ -39,6 +40,7 @@ enum class Transport {
   homogeneous,  ///< the spheres: dx/dt = v + L x
   wall,         ///< only the edges: dx/dt = v inside; a sphere that leaves re-enters with its velocity unchanged
 };
+constexpr auto names_of(Transport) { return std::array{"homogeneous", "wall"}; }
 
 /// Cell and velocity gradient at an instant.
 struct CellMotion {

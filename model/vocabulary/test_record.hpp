@@ -16,10 +16,7 @@ enum class Role {
   validation,   ///< never shown to a fit
   description,  ///< fitted by laws of its own (Table 2's UNI and D3), which the calibrated law does not read
 };
-
-std::string to_string(Role role);
-/// Throws InvalidInput for a name that is none.
-Role role_from(const std::string& name);
+constexpr auto names_of(Role) { return std::array{"calibration", "validation", "description"}; }
 
 /// What a reader of a series must know about the packing it came from.
 struct PackingInfo {

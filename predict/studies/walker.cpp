@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "model/vocabulary/error.hpp"
+#include "predict/segment_law.hpp"
 #include "predict/solvers/dormand_prince.hpp"
 #include "predict/solvers/runge_kutta.hpp"
-#include "predict/segment_law.hpp"
 
 namespace grainlaw::predict {
 namespace {
@@ -36,21 +36,6 @@ int order_of(Integrator integrator) {
 }
 
 }  // namespace
-
-std::string to_string(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::adams:
-      return "adams";
-    case Integrator::bdf:
-      return "bdf";
-    case Integrator::dopri_5:
-      return "dopri_5";
-    case Integrator::euler:
-      return "euler";
-    default:
-      return fmt::format("erk_{}", order_of(integrator));
-  }
-}
 
 struct Walker::Impl {
   const LawParameters<double>& parameters;
