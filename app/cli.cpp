@@ -16,10 +16,11 @@
 #include "app/commands/study_fit.hpp"
 #include "app/commands/study_integrator.hpp"
 #include "app/exit_code.hpp"
-#include "app/interrupt.hpp"
-#include "app/one_line.hpp"
+#include "app/terminal/interrupt.hpp"
+#include "model/files/one_line.hpp"
 #include "app/report/report.hpp"
-#include "app/session.hpp"
+#include "app/terminal/progress_printer.hpp"
+#include "app/terminal/session.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -135,7 +136,7 @@ void add_predict(CLI::App& app, Common& common, Task& task) {
   command
       ->add_option("--initial", options->initial,
                    "start from the law or from measured values; default: law, with --dem both")
-      ->transform(by_name<Initial>());
+      ->transform(by_name<predict::Initial>());
   command->add_option("--seeds", options->seeds, "seeds of the new packings, e.g. 11,12")->delimiter(',');
   command->add_option("--spec", options->spec,
                       "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");

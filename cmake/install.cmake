@@ -6,7 +6,7 @@ include(GNUInstallDirs)
 set(installed_headers ${CMAKE_INSTALL_INCLUDEDIR}/grainlaw)  # "dem/engine/packing.hpp" is found in there
 set(installed_package ${CMAKE_INSTALL_LIBDIR}/cmake/grainlaw)
 
-foreach(room IN ITEMS model dem fit predict)
+foreach(room IN ITEMS model dem fit predict chain)
   set_target_properties(grainlaw_${room} PROPERTIES EXPORT_NAME ${room})
   install(TARGETS grainlaw_${room} EXPORT grainlaw-targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}

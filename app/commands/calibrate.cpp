@@ -8,14 +8,14 @@
 
 #include "app/commands/calibrate_target.hpp"
 #include "app/files/calibration_file.hpp"
-#include "app/files/dataset.hpp"
-#include "app/files/parameters_file.hpp"
-#include "app/files/spec_file.hpp"
-#include "app/output_folder.hpp"
+#include "model/files/dataset.hpp"
+#include "chain/parameters_file.hpp"
+#include "dem/runs/spec_file.hpp"
+#include "model/files/output_folder.hpp"
 #include "app/published/verdicts.hpp"
 #include "app/report/report.hpp"
-#include "app/runs/adopted_dataset.hpp"
-#include "app/runs/dataset_runs.hpp"
+#include "model/files/adopted_dataset.hpp"
+#include "dem/runs/dataset_runs.hpp"
 #include "fit/calibrate.hpp"
 #include "fit/leave_one_out.hpp"
 #include "model/vocabulary/error.hpp"
@@ -43,9 +43,9 @@ void check_tests(const std::vector<TestRecord>& tests, const std::string& name) 
   if (std::none_of(tests.begin(), tests.end(), is_pure_shear)) missing("a shear at constant volume", "D2");
 }
 
-std::vector<TestRecord> calibration_tests(const std::vector<PlannedTest>& planned) {
+std::vector<TestRecord> calibration_tests(const std::vector<dem::PlannedTest>& planned) {
   std::vector<TestRecord> tests;
-  for (const PlannedTest& test : planned) {
+  for (const dem::PlannedTest& test : planned) {
     if (test.role == Role::calibration) tests.push_back({test.name, test.role, test.path, {}, {}});
   }
   return tests;
@@ -65,7 +65,7 @@ void log_warnings(const Dataset& dataset, Session& session) {
                                   dataset.tests.size(), first));
 }
 
-std::string summary_of(const fs::path& output, const Dataset& dataset, bool converged, const RunCounts& counts,
+std::string summary_of(const fs::path& output, const Dataset& dataset, bool converged, const dem::RunCounts& counts,
                        const Session& session) {
   const std::string parameters = (output / "parameters.json").string();
   const double seconds = session.stopwatch.seconds(), memory = peak_memory_megabytes();
@@ -119,7 +119,7 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOpti
   session.watch.end();
   const OrderedJson origin = provenance(session);
   write_calibration(output / "calibration.json", calibration, options, modes, dataset.digest, origin);
-  write_parameters(output / "parameters.json", {calibration, dataset.digest, Json(origin)});
+  chain::write_parameters(output / "parameters.json", {calibration, dataset.digest, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {
     if (!stage.converged)
       session.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
@@ -134,7 +134,7 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   if (options.spec.empty() && options.dataset.empty()) {
     throw InvalidInput("calibrate: misses SPEC.json; give it, or --dataset with the folder of a data set");
   }
-  std::optional<Spec> spec;
+  std::optional<dem::Spec> spec;
   std::optional<Dataset> given;
   fs::path from;
   if (!options.dataset.empty()) {
@@ -143,9 +143,9 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
     check_tests(tests_of(*given, Role::calibration), from.string());
   }
   if (!options.spec.empty()) {
-    spec = read_spec(options.spec);
+    spec = dem::read_spec(options.spec);
   } else if (!given->spec.is_null()) {
-    spec = spec_from_json(given->spec, (from / "dataset.json").string() + ": spec");
+    spec = dem::spec_from_json(given->spec, (from / "dataset.json").string() + ": spec");
   }
   if (!given) check_tests(calibration_tests(plan(*spec)), options.spec.string());
   fit::CalibrationOptions fit_options;
@@ -157,19 +157,19 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
       options.coupling.value_or(spec ? value_of<Coupling>(spec->coupling, "coupling") : Coupling::energy);
   if (spec) spec->coupling = to_string(fit_options.coupling);
 
-  const std::optional<PrecisionTarget> target =
+  const std::optional<chain::PrecisionTarget> target =
       options.target_error ? std::optional(target_of(options, spec)) : std::nullopt;
   make_output_folder(options.output);
   const fs::path dataset_output = make_subfolder(options.output, "dataset");
-  RunCounts counts;
-  const auto simulate = [&](const Spec& with, const fs::path& folder) {
-    const RunStore store(options.output, "runs");
-    Dataset result = run_planned(plan(with), Json(spec_to_json(with)), folder, store, session, counts);
+  dem::RunCounts counts;
+  const auto simulate = [&](const dem::Spec& with, const fs::path& folder) {
+    const dem::RunStore store(options.output, "runs");
+    Dataset result = dem::run_planned(plan(with), Json(dem::spec_to_json(with)), folder, store, session, counts);
     log_warnings(result, session);
     return result;
   };
-  const auto simulate_and_fit = [&](const Spec& with, Dataset& result, double& fit_seconds) {
-    const OrderedJson document = spec_to_json(with);
+  const auto simulate_and_fit = [&](const dem::Spec& with, Dataset& result, double& fit_seconds) {
+    const OrderedJson document = dem::spec_to_json(with);
     remove_results_of_others(options.output, json_text(document));
     write_json(options.output / "spec.resolved.json", document);
     result = simulate(with, dataset_output);
@@ -183,7 +183,7 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   bool converged = false;
   if (given) {
     remove_results_of_others(options.output, "");
-    if (spec) write_json(options.output / "spec.resolved.json", spec_to_json(*spec));
+    if (spec) write_json(options.output / "spec.resolved.json", dem::spec_to_json(*spec));
     dataset = adopt(*given, from, dataset_output);
     log_warnings(dataset, session);
     converged = fit_and_save(dataset, fit_options, options.output, session).converged;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/exit_code.hpp"
-#include "app/session.hpp"
+#include "app/terminal/session.hpp"
 #include "fit/options.hpp"
 #include "model/parameters.hpp"
 

@@ -7,13 +7,13 @@
 #include <set>
 #include <utility>
 
-#include "app/digest.hpp"
-#include "app/files/parameters_file.hpp"
-#include "app/files/path_file.hpp"
-#include "app/output_folder.hpp"
-#include "app/runs/adopted_dataset.hpp"
-#include "app/runs/new_packings.hpp"
-#include "app/uncertainty.hpp"
+#include "model/files/digest.hpp"
+#include "chain/parameters_file.hpp"
+#include "model/files/path_file.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/files/adopted_dataset.hpp"
+#include "dem/runs/new_packings.hpp"
+#include "chain/uncertainty.hpp"
 #include "model/vocabulary/error.hpp"
 #include "predict/mixed_control.hpp"
 #include "predict/rung_advice.hpp"
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr int kPointsPerSegment = 200;  // of a curve that no DEM run dictates
 
 /// The rung that is asked for, else reduced, evolution, and memory where it is calibrated.
-std::vector<Rung> rungs_of(const PredictOptions& options, const ParametersFile& parameters, const Path& path) {
+std::vector<Rung> rungs_of(const PredictOptions& options, const chain::ParametersFile& parameters, const Path& path) {
   if (options.model) return {*options.model};
   std::vector<Rung> rungs{Rung::reduced, Rung::evolution};
   if (fit::has_values(parameters.calibration, "memory")) rungs.push_back(Rung::memory);
@@ -34,10 +34,10 @@ std::vector<Rung> rungs_of(const PredictOptions& options, const ParametersFile& 
   return rungs;
 }
 
-std::vector<Initial> initials_of(const PredictOptions& options) {
+std::vector<predict::Initial> initials_of(const PredictOptions& options) {
   if (options.initial) return {*options.initial};
   const bool has_runs = options.dem || !options.against.empty();
-  return has_runs ? std::vector{Initial::law, Initial::measured} : std::vector{Initial::law};
+  return has_runs ? std::vector{predict::Initial::law, predict::Initial::measured} : std::vector{predict::Initial::law};
 }
 
 /// The law with everything that a curve needs besides its start and its points.
@@ -51,11 +51,11 @@ struct Law {
   RunControl control;
 
   /// With bands, which take the start's error in where the law makes it.
-  predict::Prediction along(Rung model, Initial initial, const LawState<double>& start,
+  predict::Prediction along(Rung model, predict::Initial initial, const LawState<double>& start,
                             const std::vector<predict::OutputPoint>& points) const {
     predict::Prediction prediction =
         predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points,
-                         predict::Tolerances{}, range, control, {uncertainty.parameters, initial == Initial::law});
+                         predict::Tolerances{}, range, control, {uncertainty.parameters, initial == predict::Initial::law});
     predict::add_bands(calibration.parameters, uncertainty, prediction);
     return prediction;
   }
@@ -64,31 +64,31 @@ struct Law {
   predict::Prediction at_equal_steps(Rung model) const {
     const LawState<double> start = predict::state_from_law(calibration.parameters, path.nu);
     if (!law_decides(path))
-      return along(model, Initial::law, start, predict::uniform_points(segments, kPointsPerSegment));
+      return along(model, predict::Initial::law, start, predict::uniform_points(segments, kPointsPerSegment));
     return predict::predict_by_law(model, calibration.parameters, calibration.coupling, path, start, kPointsPerSegment,
                                    predict::Tolerances{}, range, control);
   }
 };
 
 /// Curves at equal steps, from the law's own start.
-void add_free_curves(const Law& law, PredictionFolder& content) {
+void add_free_curves(const Law& law, predict::PredictionFolder& content) {
   for (const Rung model : law.rungs) {
     content.curves.push_back(
-        {model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), law.at_equal_steps(model)});
+        {model, predict::Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), law.at_equal_steps(model)});
   }
 }
 
 /// Curves at the rows of each DEM run, and how far they are from it.
-void add_compared_curves(const Law& law, const PredictOptions& options, PredictionFolder& content) {
+void add_compared_curves(const Law& law, const PredictOptions& options, predict::PredictionFolder& content) {
   for (const DatasetTest& test : content.dem->tests) {
     const auto points = predict::points_of(test.record);
     const std::uint64_t seed = test.record.packing.seed;
     for (const Rung model : law.rungs) {
-      for (const Initial initial : initials_of(options)) {
-        const auto start = initial == Initial::law
+      for (const predict::Initial initial : initials_of(options)) {
+        const auto start = initial == predict::Initial::law
                                ? predict::state_from_law(law.calibration.parameters, content.path.nu)
                                : predict::state_from_row(test.record.rows.front());
-        PredictedCurve curve{model, initial, seed,
+        predict::PredictedCurve curve{model, initial, seed,
                              fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
                              law.along(model, initial, start, points)};
         content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
@@ -96,35 +96,35 @@ void add_compared_curves(const Law& law, const PredictOptions& options, Predicti
       }
     }
   }
-  for (const CurveComparison& mean : mean_over_seeds(content.comparisons)) content.comparisons.push_back(mean);
+  for (const predict::CurveComparison& mean : predict::mean_over_seeds(content.comparisons)) content.comparisons.push_back(mean);
 }
 
 /// The runs of the path on new packings.
-Dataset run_dem(const PredictOptions& options, const Spec& spec, const PathFile& path, Session& session) {
+Dataset run_dem(const PredictOptions& options, const dem::Spec& spec, const PathFile& path, Session& session) {
   const std::string name = options.path.string();
-  const auto tests = plan(spec, path, new_seeds(spec, path, options.seeds, name), name);
+  const auto tests = plan(spec, path, dem::new_seeds(spec, path, options.seeds, name), name);
   const fs::path parent = !options.store.empty()                 ? options.store
                           : options.parameters.has_parent_path() ? options.parameters.parent_path()
                                                                  : fs::path(".");
   make_output_folder(parent);
-  RunCounts counts;
-  return run_planned(tests, Json(spec_to_json(spec)), make_subfolder(options.output, "dem"), RunStore(parent, "runs"),
+  dem::RunCounts counts;
+  return dem::run_planned(tests, Json(dem::spec_to_json(spec)), make_subfolder(options.output, "dem"), dem::RunStore(parent, "runs"),
                      session, counts);
 }
 
-Spec spec_beside(const PredictOptions& options) {
+dem::Spec spec_beside(const PredictOptions& options) {
   const fs::path file = options.spec.empty() ? options.parameters.parent_path() / "spec.resolved.json" : options.spec;
   if (options.spec.empty() && !fs::exists(file)) {
     throw InvalidInput(fmt::format(
         "{}: not found; --dem prepares packings by the calibration's spec, give it with --spec", file.string()));
   }
-  return read_spec(file);
+  return dem::read_spec(file);
 }
 
-OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) {
+OrderedJson summary_of(const predict::PredictionFolder& content, const fs::path& output) {
   OrderedJson summary{{"folder", output.string()}, {"rung", rung_to_json(content)}, {"bands", content.bands}};
   OrderedJson& comparisons = summary["comparisons"] = OrderedJson::array();
-  for (const CurveComparison& entry : content.comparisons) {
+  for (const predict::CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
     OrderedJson object{{"model", to_string(entry.model)}, {"initial", to_string(entry.initial)}};
     for (const auto& q : entry.comparison.quantities) {
@@ -139,15 +139,15 @@ OrderedJson summary_of(const PredictionFolder& content, const fs::path& output) 
 }
 
 /// Which rung the path needs, and what each richer one changes on the curves from the law's start.
-void add_advice(const Law& law, PredictionFolder& content) {
+void add_advice(const Law& law, predict::PredictionFolder& content) {
   // where the law decides where the path leads, two rungs have no rows at the same strain
   if (law_decides(law.path)) {
     content.needed = {Rung::evolution, "the law decides the strain"};
     return;
   }
   content.needed = predict::rung_needed(law.calibration.parameters, law.segments);
-  const PredictedCurve* cheaper = nullptr;
-  for (const PredictedCurve& curve : content.curves) {
+  const predict::PredictedCurve* cheaper = nullptr;
+  for (const predict::PredictedCurve& curve : content.curves) {
     if (curve.seed) continue;
     if (cheaper != nullptr)
       content.changes.push_back(
@@ -156,9 +156,9 @@ void add_advice(const Law& law, PredictionFolder& content) {
   }
 }
 
-std::string advice_text(const PredictionFolder& content) {
+std::string advice_text(const predict::PredictionFolder& content) {
   std::string text = fmt::format("needs     {}: {}\n", to_string(content.needed.rung), content.needed.why);
-  for (const RungChange& change : content.changes) {
+  for (const predict::RungChange& change : content.changes) {
     const predict::RungDifference& d = change.difference;
     text +=
         fmt::format("{} instead of {} changes P* by up to {:.1f} %, the stress ratio by {:.4f}, the fabric by {:.4f}\n",
@@ -192,9 +192,9 @@ std::string coverage_text(const predict::Comparison& comparison) {
   return text.empty() ? text : fmt::format("{:<18}  within the bands{}\n", "", text);
 }
 
-std::string text_of(const PredictionFolder& content, const fs::path& output) {
+std::string text_of(const predict::PredictionFolder& content, const fs::path& output) {
   std::string text = advice_text(content) + "bands     " + content.bands + "\n";
-  for (const PredictedCurve& curve : content.curves) {
+  for (const predict::PredictedCurve& curve : content.curves) {
     if (curve.seed || curve.prediction.rows.empty()) continue;
     const predict::PredictedRow& end = curve.prediction.rows.back();
     text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n", to_string(curve.model),
@@ -202,7 +202,7 @@ std::string text_of(const PredictionFolder& content, const fs::path& output) {
                         curve.prediction.unjammed ? "  (unjammed)" : "");
     text += bands_text(end);
   }
-  for (const CurveComparison& entry : content.comparisons) {
+  for (const predict::CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
     text += fmt::format("{:<9} {:<8}", to_string(entry.model), to_string(entry.initial));
     for (const auto& q : entry.comparison.quantities)
@@ -215,10 +215,10 @@ std::string text_of(const PredictionFolder& content, const fs::path& output) {
 }  // namespace
 
 ExitCode run_prediction(const PredictOptions& options, Session& session) {
-  if (options.initial == Initial::measured && !options.dem && options.against.empty()) {
+  if (options.initial == predict::Initial::measured && !options.dem && options.against.empty()) {
     throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem or --against too");
   }
-  const ParametersFile parameters = read_parameters(options.parameters);
+  const chain::ParametersFile parameters = chain::read_parameters(options.parameters);
   const PathFile path = read_path(options.path);
   const std::vector<Rung> rungs = rungs_of(options, parameters, path.path);
   if (law_decides(path.path) && rungs.front() == Rung::reduced) {
@@ -227,21 +227,21 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
                     "--model evolution",
                     options.path.string()));
   }
-  for (const Rung model : rungs) require_parameters(parameters, model, options.parameters.string());
+  for (const Rung model : rungs) chain::require_parameters(parameters, model, options.parameters.string());
   const fit::Calibration& calibration = parameters.calibration;
   const Law law{calibration,
                 rungs,
                 path.path,
                 law_decides(path.path) ? std::vector<StraightSegment>{} : resolve(path.path),
-                uncertainty_of(calibration),
+                chain::uncertainty_of(calibration),
                 {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max},
                 {{}, session.stop}};
   predict::state_from_law(calibration.parameters,
                           path.path.nu);  // refuses a start below jamming before anything is written
-  std::optional<Spec> spec;
+  std::optional<dem::Spec> spec;
   if (options.dem) {
     spec = spec_beside(options);
-    plan(*spec, path, new_seeds(*spec, path, options.seeds, options.path.string()), options.path.string());
+    plan(*spec, path, dem::new_seeds(*spec, path, options.seeds, options.path.string()), options.path.string());
   }
 
   std::optional<Dataset> finished;
@@ -253,7 +253,7 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   }
 
   make_output_folder(options.output);
-  PredictionFolder content;
+  predict::PredictionFolder content;
   content.name = options.output.filename().string();
   content.path = path.path;
   content.parameters = {{"file", options.parameters.string()},
@@ -261,16 +261,16 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
                         {"dataset_digest", parameters.dataset_digest}};
   if (options.dem) content.dem = run_dem(options, *spec, path, session);
   if (finished) content.dem = adopt(*finished, from, make_subfolder(options.output, "dem"));
-  if (options.initial != Initial::measured) add_free_curves(law, content);
+  if (options.initial != predict::Initial::measured) add_free_curves(law, content);
   if (content.dem) add_compared_curves(law, options, content);
   add_advice(law, content);
-  content.bands = law_decides(path.path) ? "none: the law decides the strain" : text_of(law.uncertainty);
+  content.bands = law_decides(path.path) ? "none: the law decides the strain" : chain::text_of(law.uncertainty);
   content.provenance = Json(provenance(session));
-  write_prediction(options.output, content);
+  predict::write_prediction(options.output, content);
 
   std::set<std::string> warned;
   if (!calibration.converged) session.watch.log("warning: the calibration did not converge");
-  for (const PredictedCurve& curve : content.curves) {
+  for (const predict::PredictedCurve& curve : content.curves) {
     for (const std::string& warning : curve.prediction.warnings) {
       if (warned.insert(warning).second) session.watch.log("warning: " + warning);
     }

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/exit_code.hpp"
-#include "app/files/prediction_files.hpp"
-#include "app/session.hpp"
+#include "predict/prediction_files.hpp"
+#include "app/terminal/session.hpp"
 
 namespace grainlaw::app {
 
@@ -18,7 +18,7 @@ struct PredictOptions {
   std::filesystem::path path;        ///< PATH.json
   std::filesystem::path output;      ///< folder of the prediction
   std::optional<Rung> model;         ///< none: reduced, evolution, and memory where it is calibrated
-  std::optional<Initial> initial;    ///< none: law, and measured too with `dem` or `against`
+  std::optional<predict::Initial> initial;    ///< none: law, and measured too with `dem` or `against`
   bool dem = false;                  ///< run the path in the engine too
   std::filesystem::path against;     ///< data set with runs of the path; empty: none
   std::vector<std::uint64_t>

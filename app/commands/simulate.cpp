@@ -4,16 +4,16 @@
 
 #include <cmath>
 
-#include "app/digest.hpp"
-#include "app/files/path_json.hpp"
-#include "app/files/preparation_json.hpp"
-#include "app/files/series_columns.hpp"
-#include "app/files/series_csv.hpp"
-#include "app/files/spec_file.hpp"
-#include "app/files/test_file.hpp"
-#include "app/output_folder.hpp"
-#include "app/runs/job_list.hpp"
-#include "app/runs/runs.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/path_json.hpp"
+#include "dem/runs/preparation_json.hpp"
+#include "model/files/series_columns.hpp"
+#include "model/files/series_csv.hpp"
+#include "dem/runs/spec_file.hpp"
+#include "dem/runs/test_file.hpp"
+#include "model/files/output_folder.hpp"
+#include "dem/runs/job_list.hpp"
+#include "dem/runs/runs.hpp"
 #include "model/files/durable_file.hpp"
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
@@ -24,47 +24,47 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TestStart start_of(const TestFile& test) {
+dem::TestStart start_of(const dem::TestFile& test) {
   return {test.preparation, test.preparation.rows, test.given, test.given_digest, test.relax, test.probes};
 }
 
 /// The jobs of the file: the preparation unless the packing is given, then the test unless there is none.
-void run(const TestFile& test, const RunStore& store, Session& session) {
-  std::vector<Job> jobs;
+void run(const dem::TestFile& test, const dem::RunStore& store, Session& session) {
+  std::vector<dem::Job> jobs;
   if (!test.given) {
-    const bool done = store.find(run_key(preparation_request(test.preparation))).has_value();
+    const bool done = store.find(dem::run_key(dem::preparation_request(test.preparation))).has_value();
     const auto particles = static_cast<double>(test.preparation.packing.particles);
     const std::string name = fmt::format("preparation of seed {}", test.preparation.packing.seed);
-    jobs.push_back({name, done ? 0 : particles * expected_steps(test.preparation), std::nullopt,
-                    [&, policy = policy_of(session, name)](int threads, const RunControl& control) {
+    jobs.push_back({name, done ? 0 : particles * dem::expected_steps(test.preparation), std::nullopt,
+                    [&, policy = dem::policy_of(session, name)](int threads, const RunControl& control) {
                       dem::PreparationOptions options = test.preparation;
                       options.engine.threads = threads;
-                      ensure_preparation(store, options, policy, control);
+                      dem::ensure_preparation(store, options, policy, control);
                     }});
   }
-  if (test.start != Start::preparation) {
+  if (test.start != dem::Start::preparation) {
     const double particles = test.given ? static_cast<double>(test.given->packing.size())
                                         : static_cast<double>(test.preparation.packing.particles);
-    const bool done = store.find(run_key(test_request(start_of(test), test.path))).has_value();
+    const bool done = store.find(dem::run_key(dem::test_request(start_of(test), test.path))).has_value();
     jobs.push_back({"element test",
-                    done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
+                    done ? 0 : particles * std::max(1.0, dem::expected_steps(test.preparation, resolve(test.path))),
                     jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
-                    [&, policy = policy_of(session, "element test")](int threads, const RunControl& control) {
-                      TestStart start = start_of(test);
+                    [&, policy = dem::policy_of(session, "element test")](int threads, const RunControl& control) {
+                      dem::TestStart start = start_of(test);
                       start.preparation.engine.threads = threads;
-                      ensure_test(store, start, test.path, policy, control);
+                      dem::ensure_test(store, start, test.path, policy, control);
                     }});
   }
-  run_jobs(jobs, session.threads, session.watch, session.stop);
+  dem::run_jobs(jobs, session.threads, session.watch, session.stop);
 }
 
 /// What unloading.csv was observed on.
 Path unloading_branch(const dem::PreparationOptions& options) {
-  TestRequest iso;
+  dem::TestRequest iso;
   iso.mode = "ISO";
-  Spec spec;
+  dem::Spec spec;
   spec.preparation = options;
-  return path_of(iso, 0, spec);
+  return dem::path_of(iso, 0, spec);
 }
 
 std::string value_text(double value) { return std::isnan(value) ? "undefined" : fmt::format("{:.6g}", value); }
@@ -101,7 +101,7 @@ OrderedJson cell_to_json(const Eigen::Matrix3d& H) {
 }
 
 /// Copies the files of a finished run into the user's folder.
-std::vector<std::string> publish(const RunStore& store, const std::string& key, const Json& record,
+std::vector<std::string> publish(const dem::RunStore& store, const std::string& key, const Json& record,
                                  const fs::path& folder) {
   std::vector<std::string> names;
   for (const auto& file : record.at("files").items()) {
@@ -114,19 +114,19 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
 }  // namespace
 
 ExitCode simulate(const SimulateOptions& options, Session& session) {
-  const TestFile test = read_test(options.test);
+  const dem::TestFile test = dem::read_test(options.test);
   make_output_folder(options.output);
-  const RunStore store(options.output, "runs");
+  const dem::RunStore store(options.output, "runs");
   run(test, store, session);
 
-  const bool prepared = test.start == Start::preparation;
+  const bool prepared = test.start == dem::Start::preparation;
   const std::string key =
-      run_key(prepared ? preparation_request(test.preparation) : test_request(start_of(test), test.path));
+      dem::run_key(prepared ? dem::preparation_request(test.preparation) : dem::test_request(start_of(test), test.path));
   const Json record = store.find(key).value();
   std::vector<std::string> files = publish(store, key, record, options.output);
   const Path path = prepared ? unloading_branch(test.preparation) : test.path;
   const auto rows =
-      read_series(options.output / (prepared ? "unloading.csv" : "series.csv"), path, packing_from_record(record));
+      read_series(options.output / (prepared ? "unloading.csv" : "series.csv"), path, dem::packing_from_record(record));
   OrderedJson summary{{"format", "grainlaw simulation"}, {"format_version", 1}, {"run", key}, {"rows", rows.size()}};
   summary["packing"] = OrderedJson(record.at("packing"));
   if (prepared) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/exit_code.hpp"
-#include "app/session.hpp"
+#include "app/terminal/session.hpp"
 
 namespace grainlaw::app {
 

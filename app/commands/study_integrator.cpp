@@ -5,10 +5,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "app/files/parameters_file.hpp"
-#include "app/output_folder.hpp"
-#include "app/study/study_output.hpp"
-#include "app/study/work_precision.hpp"
+#include "chain/parameters_file.hpp"
+#include "model/files/output_folder.hpp"
+#include "app/commands/study_output.hpp"
+#include "predict/studies/work_precision.hpp"
 #include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 #include "predict/studies/batch.hpp"
@@ -39,8 +39,8 @@ StudiedLaw law_of(const StudyIntegratorOptions& options) {
     law.parameters.anisotropy.a2 = kMeasuredA2;
     return law;
   }
-  const ParametersFile file = read_parameters(options.parameters);
-  require_parameters(file, Rung::evolution, options.parameters.string());
+  const chain::ParametersFile file = chain::read_parameters(options.parameters);
+  chain::require_parameters(file, Rung::evolution, options.parameters.string());
   return {file.calibration.parameters, file.calibration.coupling, options.parameters.string()};
 }
 
@@ -57,12 +57,12 @@ std::vector<predict::BatchPath> batch_paths(const LawParameters<double>& paramet
 }
 
 /// The batch by CVODE and by what was quickest on the smooth path.
-std::vector<BatchTime> time_batch(const StudiedLaw& law, const WorkPrecision& smooth,
+std::vector<BatchTime> time_batch(const StudiedLaw& law, const predict::WorkPrecision& smooth,
                                   const StudyIntegratorOptions& options, const Session& session) {
   const auto paths = batch_paths(law.parameters, options.paths);
   std::vector<BatchTime> times;
   const Integrator adams = Integrator::adams;
-  for (const WorkPoint* point : {quickest(smooth, kWantedError, &adams), quickest(smooth, kWantedError)}) {
+  for (const predict::WorkPoint* point : {predict::quickest(smooth, kWantedError, &adams), predict::quickest(smooth, kWantedError)}) {
     if (!point) continue;
     const auto before = std::chrono::steady_clock::now();
     predict::walk_batch(paths, point->integrator, point->accuracy, law.parameters, Rung::evolution, law.coupling,
@@ -80,17 +80,20 @@ OrderedJson values_to_json(const LawParameters<double>& parameters) {
   return values;
 }
 
-OrderedJson point_to_json(const WorkPoint& point) {
-  return {
-      {"integrator", to_string(point.integrator)}, {"accuracy", point.accuracy}, {"error", number_or_null(point.error)},
-      {"rhs_evaluations", point.rhs_evaluations},  {"steps", point.steps},       {"microseconds", point.microseconds}};
+OrderedJson point_to_json(const predict::WorkPoint& point) {
+  return {{"integrator", to_string(point.integrator)},
+          {"accuracy", point.accuracy},
+          {"error", number_or_null(point.error)},
+          {"rhs_evaluations", point.rhs_evaluations},
+          {"steps", point.steps},
+          {"microseconds", point.microseconds}};
 }
 
-OrderedJson panel_to_json(const WorkPrecision& study) {
+OrderedJson panel_to_json(const predict::WorkPrecision& study) {
   OrderedJson points = OrderedJson::array(), quickest_points = OrderedJson::array();
-  for (const WorkPoint& point : study.points) points.push_back(point_to_json(point));
+  for (const predict::WorkPoint& point : study.points) points.push_back(point_to_json(point));
   for (const Integrator& integrator : predict::kIntegrators) {
-    if (const WorkPoint* point = quickest(study, kWantedError, &integrator))
+    if (const predict::WorkPoint* point = predict::quickest(study, kWantedError, &integrator))
       quickest_points.push_back(point_to_json(*point));
   }
   return {{"path", study.path.name},
@@ -116,7 +119,7 @@ OrderedJson batch_to_json(const std::vector<BatchTime>& times, int paths, int th
   return array;
 }
 
-report::Series series_of(const WorkPrecision& study, Integrator integrator, bool time) {
+report::Series series_of(const predict::WorkPrecision& study, Integrator integrator, bool time) {
   using namespace report;
   constexpr Marker markers[] = {Marker::circle,  Marker::square, Marker::triangle,
                                 Marker::diamond, Marker::cross,  Marker::plus};
@@ -128,7 +131,7 @@ report::Series series_of(const WorkPrecision& study, Integrator integrator, bool
   series.open_marker = i >= kColourCount;
   series.line = i < 2 ? Line::solid : integrator == Integrator::euler ? Line::dotted : Line::dashed;
   series.line_width = 1.2;
-  for (const WorkPoint& point : study.points) {
+  for (const predict::WorkPoint& point : study.points) {
     if (point.integrator != integrator) continue;
     series.x.push_back(point.error);
     series.y.push_back(time ? point.microseconds : static_cast<double>(point.rhs_evaluations));
@@ -136,7 +139,7 @@ report::Series series_of(const WorkPrecision& study, Integrator integrator, bool
   return series;
 }
 
-report::Figure figure_of(const std::vector<WorkPrecision>& studies) {
+report::Figure figure_of(const std::vector<predict::WorkPrecision>& studies) {
   using namespace report;
   Figure figure;
   figure.id = "work-precision";
@@ -145,7 +148,7 @@ report::Figure figure_of(const std::vector<WorkPrecision>& studies) {
   figure.columns = static_cast<int>(studies.size());
   figure.panel_height = 260;
   for (const bool time : {false, true}) {
-    for (const WorkPrecision& study : studies) {
+    for (const predict::WorkPrecision& study : studies) {
       Panel panel;
       panel.title = plain(study.path.name);
       panel.x.label = plain("error [–]");
@@ -160,13 +163,13 @@ report::Figure figure_of(const std::vector<WorkPrecision>& studies) {
   return figure;
 }
 
-std::string text_of(const std::vector<WorkPrecision>& studies, const std::vector<BatchTime>& times, int paths,
+std::string text_of(const std::vector<predict::WorkPrecision>& studies, const std::vector<BatchTime>& times, int paths,
                     int threads) {
   std::string text = fmt::format("least microseconds of a path with an error of at most {:.0e}\n", kWantedError);
-  for (const WorkPrecision& study : studies) {
+  for (const predict::WorkPrecision& study : studies) {
     text += fmt::format("{}: {}\n", study.path.name, study.path.description);
     for (const Integrator& integrator : predict::kIntegrators) {
-      const WorkPoint* point = quickest(study, kWantedError, &integrator);
+      const predict::WorkPoint* point = predict::quickest(study, kWantedError, &integrator);
       text += point ? fmt::format("  {:<7} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
                                   to_string(integrator), point->microseconds, point->rhs_evaluations, point->error,
                                   point->accuracy)
@@ -185,22 +188,22 @@ std::string text_of(const std::vector<WorkPrecision>& studies, const std::vector
 ExitCode study_integrator(const StudyIntegratorOptions& options, Session& session) {
   const StudiedLaw law = law_of(options);
   make_output_folder(options.output);
-  std::vector<WorkPrecision> studies;
-  for (const StudyPath& path : study_paths(law.parameters)) {
+  std::vector<predict::WorkPrecision> studies;
+  for (const predict::StudyPath& path : predict::study_paths(law.parameters)) {
     session.watch.log("study of " + path.name);
     studies.push_back(
-        measure_work(path, law.parameters, Rung::evolution, law.coupling, options.repeats, {{}, session.stop}));
+        predict::measure_work(path, law.parameters, Rung::evolution, law.coupling, options.repeats, {{}, session.stop}));
   }
   const std::vector<BatchTime> times = time_batch(law, studies.front(), options, session);
 
-  OrderedJson document = study_document("integrator");
+  OrderedJson document = chain::study_document("integrator");
   document["parameters"] = law.source;
   document["values"] = values_to_json(law.parameters);
   document["coupling"] = to_string(law.coupling);
   document["repeats"] = options.repeats;
   document["error"] = "largest of |dP|/P, |dsigma'|/P, |dF'| at the ends of the segments";
   OrderedJson& panels = document["panels"] = OrderedJson::array();
-  for (const WorkPrecision& study : studies) panels.push_back(panel_to_json(study));
+  for (const predict::WorkPrecision& study : studies) panels.push_back(panel_to_json(study));
   document["batch"] = batch_to_json(times, options.paths, session.threads);
   finish_study(options.output, document, "work_precision.svg", figure_of(studies),
                text_of(studies, times, options.paths, session.threads), session);

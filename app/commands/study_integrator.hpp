@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "app/exit_code.hpp"
-#include "app/session.hpp"
+#include "app/terminal/session.hpp"
 
 namespace grainlaw::app {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/files/estimate_json.hpp"
+#include "chain/estimate_json.hpp"
 #include "app/files/fit_checks_json.hpp"
-#include "app/one_line.hpp"
+#include "model/files/one_line.hpp"
 #include "fit/statistics/curve_error.hpp"
 #include "model/density_curves.hpp"
 #include "model/vocabulary/error.hpp"
@@ -56,7 +56,7 @@ OrderedJson stage_to_json(const fit::Stage& stage) {
   OrderedJson& profiles = object["profiles"] = OrderedJson::array();
   for (const fit::Profile& profile : stage.profiles) profiles.push_back(profile_to_json(profile));
   OrderedJson& estimates = object["estimates"] = OrderedJson::object();
-  for (const fit::NamedEstimate& named : stage.estimates) estimates[named.name] = estimate_to_json(named.estimate);
+  for (const fit::NamedEstimate& named : stage.estimates) estimates[named.name] = chain::estimate_to_json(named.estimate);
   OrderedJson& tests = object["tests"] = OrderedJson::array();
   for (const fit::TestResidual& residual : stage.tests) tests.push_back(residual_to_json(residual));
   return object;
@@ -77,7 +77,7 @@ fit::Stage stage_from_json(const Json& object) {
   stage.starts = starts_from_json(object.at("starts"));
   for (const Json& profile : object.at("profiles")) stage.profiles.push_back(profile_from_json(profile));
   for (const auto& item : object.at("estimates").items())
-    stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
+    stage.estimates.push_back({item.key(), chain::estimate_from_json(item.value())});
   for (const Json& residual : object.at("tests")) stage.tests.push_back(residual_from_json(residual));
   return stage;
 }
@@ -108,7 +108,7 @@ constexpr std::array<std::pair<const char*, fit::Estimate fit::ShearFit::*>, 4> 
 OrderedJson shear_to_json(const fit::ShearFit& shear) {
   OrderedJson object{{"test", shear.test}, {"mode", to_string(shear.mode)}, {"seed", shear.seed}};
   for (const auto& [key, member] : kShearNumbers) object[key] = number_or_null(shear.*member);
-  for (const auto& [key, member] : kShearEstimates) object[key] = estimate_to_json(shear.*member);
+  for (const auto& [key, member] : kShearEstimates) object[key] = chain::estimate_to_json(shear.*member);
   return object;
 }
 
@@ -118,7 +118,7 @@ fit::ShearFit shear_from_json(const Json& object) {
   shear.mode = value_of<Mode>(object.at("mode").get<std::string>(), "mode");
   shear.seed = object.at("seed");
   for (const auto& [key, member] : kShearNumbers) shear.*member = number_or_nan(object.at(key));
-  for (const auto& [key, member] : kShearEstimates) shear.*member = estimate_from_json(object.at(key));
+  for (const auto& [key, member] : kShearEstimates) shear.*member = chain::estimate_from_json(object.at(key));
   return shear;
 }
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "app/files/json_document.hpp"
+#include "model/files/json_document.hpp"
 #include "app/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
 

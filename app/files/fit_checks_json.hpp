@@ -1,7 +1,7 @@
 #pragma once
 // JSON of what checks a fit: likelihood profiles, solutions from several starts, fits without one packing.
 
-#include "app/files/json_document.hpp"
+#include "model/files/json_document.hpp"
 #include "fit/calibrate.hpp"
 
 namespace grainlaw::app {

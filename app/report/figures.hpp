@@ -27,7 +27,7 @@ Figure shear_law_figure(const ReportInput& input);
 Figure residual_figure(const ReportInput& input);
 
 /// P*, s_par, F_par against eps_dev of one prediction and the DEM runs of its path, and their difference.
-Figure prediction_figure(const PredictionFolder& prediction, std::size_t index);
+Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_t index);
 
 /// E_kin/E_pot, |energy residual|, inertial number against nu on the isotropic branches.
 Figure preparation_quality_figure(const ReportInput& input);

@@ -42,28 +42,28 @@ struct Abscissa {
   double of(const PredictedRow& row) const { return by_strain ? row.eps_dev : row.shear_path; }
 };
 
-Abscissa abscissa_of(const PredictionFolder& prediction, const std::vector<TestRecord>& dem) {
+Abscissa abscissa_of(const predict::PredictionFolder& prediction, const std::vector<TestRecord>& dem) {
   const bool grows =
       std::all_of(dem.begin(), dem.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
       std::all_of(prediction.curves.begin(), prediction.curves.end(),
-                  [](const PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
+                  [](const predict::PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
   return {grows};
 }
 
 /// Started from the law, a curve is the same for every seed and shown once; from measured values there is one for each.
-std::vector<const PredictedCurve*> shown_curves(const PredictionFolder& prediction) {
-  std::vector<const PredictedCurve*> shown;
-  for (const PredictedCurve& drawn : prediction.curves) {
-    const bool again = std::any_of(shown.begin(), shown.end(), [&](const PredictedCurve* other) {
-      return drawn.initial == Initial::law && other->initial == Initial::law && other->model == drawn.model;
+std::vector<const predict::PredictedCurve*> shown_curves(const predict::PredictionFolder& prediction) {
+  std::vector<const predict::PredictedCurve*> shown;
+  for (const predict::PredictedCurve& drawn : prediction.curves) {
+    const bool again = std::any_of(shown.begin(), shown.end(), [&](const predict::PredictedCurve* other) {
+      return drawn.initial == predict::Initial::law && other->initial == predict::Initial::law && other->model == drawn.model;
     });
     if (!again) shown.push_back(&drawn);
   }
   return shown;
 }
 
-Series law_series(const PredictedCurve& drawn) {
-  const bool measured = drawn.initial == Initial::measured;
+Series law_series(const predict::PredictedCurve& drawn) {
+  const bool measured = drawn.initial == predict::Initial::measured;
   Series series;
   series.label = plain(to_string(drawn.model) + (measured ? ", from measured start" : ", from the law's start"));
   series.colour = drawn.model == Rung::reduced     ? Colour::green
@@ -73,7 +73,7 @@ Series law_series(const PredictedCurve& drawn) {
   return series;
 }
 
-Series predicted_line(const PredictedCurve& drawn, const Predicted& quantity, const Abscissa& abscissa) {
+Series predicted_line(const predict::PredictedCurve& drawn, const Predicted& quantity, const Abscissa& abscissa) {
   Series series = law_series(drawn);
   for (const PredictedRow& row : drawn.prediction.rows) {
     series.x.push_back(abscissa.of(row));
@@ -83,17 +83,17 @@ Series predicted_line(const PredictedCurve& drawn, const Predicted& quantity, co
 }
 
 /// The curve whose bands are drawn: of the rung that the path needs, else of the richest, from the law's own start.
-const PredictedCurve* banded_curve(const PredictionFolder& prediction,
-                                   const std::vector<const PredictedCurve*>& shown) {
-  const PredictedCurve* richest = nullptr;
-  for (const PredictedCurve* drawn : shown) {
-    if (drawn->initial != Initial::law) continue;
+const predict::PredictedCurve* banded_curve(const predict::PredictionFolder& prediction,
+                                   const std::vector<const predict::PredictedCurve*>& shown) {
+  const predict::PredictedCurve* richest = nullptr;
+  for (const predict::PredictedCurve* drawn : shown) {
+    if (drawn->initial != predict::Initial::law) continue;
     if (richest == nullptr || richest->model != prediction.needed.rung) richest = drawn;
   }
   return richest;
 }
 
-void add_bands(const PredictedCurve& drawn, const Predicted& quantity, Series& series) {
+void add_bands(const predict::PredictedCurve& drawn, const Predicted& quantity, Series& series) {
   series.bands.resize(2);
   for (const PredictedRow& row : drawn.prediction.rows) {
     series.bands[0].push_back(row.mean.*quantity.band);
@@ -102,7 +102,7 @@ void add_bands(const PredictedCurve& drawn, const Predicted& quantity, Series& s
 }
 
 /// Row by row: the curve was computed at the rows of `test`.
-Series difference_line(const PredictedCurve& drawn, const TestRecord& test, const Predicted& quantity,
+Series difference_line(const predict::PredictedCurve& drawn, const TestRecord& test, const Predicted& quantity,
                        const Abscissa& abscissa) {
   Series series = law_series(drawn);
   series.line_width = 1;
@@ -122,7 +122,7 @@ AxisStyle strain_axis(const Abscissa& abscissa) {
   return style;
 }
 
-Panel value_panel(const PredictionFolder& prediction, const std::vector<TestRecord>& dem, const Predicted& quantity,
+Panel value_panel(const predict::PredictionFolder& prediction, const std::vector<TestRecord>& dem, const Predicted& quantity,
                   const Abscissa& abscissa) {
   Panel panel;
   panel.x = strain_axis(abscissa);
@@ -135,16 +135,16 @@ Panel value_panel(const PredictionFolder& prediction, const std::vector<TestReco
                                        quantity.measured, 60, plain("DEM seed " + std::to_string(test.packing.seed)),
                                        seed % 2 == 0 ? Colour::blue : Colour::sky, marker_of(seed)));
   }
-  const std::vector<const PredictedCurve*> shown = shown_curves(prediction);
-  const PredictedCurve* const banded = banded_curve(prediction, shown);
-  for (const PredictedCurve* drawn : shown) {
+  const std::vector<const predict::PredictedCurve*> shown = shown_curves(prediction);
+  const predict::PredictedCurve* const banded = banded_curve(prediction, shown);
+  for (const predict::PredictedCurve* drawn : shown) {
     panel.series.push_back(predicted_line(*drawn, quantity, abscissa));
     if (drawn == banded) add_bands(*drawn, quantity, panel.series.back());
   }
   return panel;
 }
 
-Panel difference_panel(const PredictionFolder& prediction, const std::vector<TestRecord>& dem,
+Panel difference_panel(const predict::PredictionFolder& prediction, const std::vector<TestRecord>& dem,
                        const Predicted& quantity, const Abscissa& abscissa) {
   Panel panel;
   panel.x = strain_axis(abscissa);
@@ -153,9 +153,9 @@ Panel difference_panel(const PredictionFolder& prediction, const std::vector<Tes
   panel.zero_line = true;
   const bool from_law =
       std::any_of(prediction.curves.begin(), prediction.curves.end(),
-                  [](const PredictedCurve& drawn) { return drawn.seed && drawn.initial == Initial::law; });
-  for (const PredictedCurve& drawn : prediction.curves) {
-    if (!drawn.seed || (from_law && drawn.initial != Initial::law)) continue;
+                  [](const predict::PredictedCurve& drawn) { return drawn.seed && drawn.initial == predict::Initial::law; });
+  for (const predict::PredictedCurve& drawn : prediction.curves) {
+    if (!drawn.seed || (from_law && drawn.initial != predict::Initial::law)) continue;
     for (const TestRecord& test : dem) {
       if (test.packing.seed == *drawn.seed) panel.series.push_back(difference_line(drawn, test, quantity, abscissa));
     }
@@ -163,13 +163,13 @@ Panel difference_panel(const PredictionFolder& prediction, const std::vector<Tes
   return panel;
 }
 
-std::string in_folder(const PredictionFolder& prediction, const std::string& file) {
+std::string in_folder(const predict::PredictionFolder& prediction, const std::string& file) {
   return "predictions/" + prediction.name + "/" + file;
 }
 
 }  // namespace
 
-Figure prediction_figure(const PredictionFolder& prediction, std::size_t index) {
+Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_t index) {
   const std::vector<TestRecord> dem = dem_records(prediction);
   Figure figure;
   figure.id = fmt::format("prediction-{}", index + 1);

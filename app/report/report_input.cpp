@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "app/digest.hpp"
+#include "model/files/digest.hpp"
 #include "app/files/calibration_file.hpp"
-#include "app/files/parameters_file.hpp"
+#include "chain/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app::report {
@@ -46,10 +46,10 @@ std::vector<fs::path> prediction_folders(const fs::path& dir) {
 }
 
 /// No prediction is an error, unless the parameters allow none: then the page is what shows why.
-void check_predictions(const ParametersFile& parameters, const fs::path& dir, const std::string& command,
+void check_predictions(const chain::ParametersFile& parameters, const fs::path& dir, const std::string& command,
                        ReportInput& input) {
   try {
-    require_parameters(parameters, Rung::reduced, "parameters.json");
+    chain::require_parameters(parameters, Rung::reduced, "parameters.json");
   } catch (const InvalidInput& error) {
     input.warnings.push_back(std::string("No prediction can be made: ") + error.what());
     return;
@@ -83,7 +83,7 @@ ReportInput read_report_input(const fs::path& dir) {
                                                (dir / "parameters.json").string(), (dir / "predictions").string());
 
   ReportInput input;
-  ParametersFile parameters = with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); });
+  chain::ParametersFile parameters = with_remedy(calibrate, [&] { return chain::read_parameters(dir / "parameters.json"); });
   input.calibration = parameters.calibration;
   with_remedy(calibrate, [&] { input.modes = read_calibration(dir / "calibration.json", input.calibration); });
   add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.dataset_digest, input);
@@ -95,7 +95,7 @@ ReportInput read_report_input(const fs::path& dir) {
   for (const fs::path& folder : folders) {
     const std::string name = folder.filename().string();
     require_file(folder / "prediction.json", predict_into + name);
-    input.predictions.push_back(with_remedy(predict_into + name, [&] { return read_prediction(folder); }));
+    input.predictions.push_back(with_remedy(predict_into + name, [&] { return predict::read_prediction(folder); }));
     if (input.predictions.back().dem) {
       for (const DatasetTest& test : input.predictions.back().dem->tests) {
         for (const std::string& warning : test.warnings) {
@@ -116,10 +116,10 @@ ReportInput read_report_input(const fs::path& dir) {
 fit::Calibration read_fitted_parameters(const fs::path& dir) {
   const std::string calibrate = calibrate_command(dir);
   require_file(dir / "parameters.json", calibrate);
-  return with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); }).calibration;
+  return with_remedy(calibrate, [&] { return chain::read_parameters(dir / "parameters.json"); }).calibration;
 }
 
-std::vector<TestRecord> dem_records(const PredictionFolder& prediction) {
+std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction) {
   std::vector<TestRecord> records;
   if (prediction.dem) {
     for (const DatasetTest& test : prediction.dem->tests) records.push_back(test.record);

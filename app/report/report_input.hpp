@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/files/prediction_files.hpp"
+#include "predict/prediction_files.hpp"
 #include "app/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
 #include "model/vocabulary/test_record.hpp"
@@ -24,7 +24,7 @@ struct ReportInput {
   std::vector<RunCost> costs;     ///< of the tests, in their order
   fit::Calibration calibration;
   ModeComparison modes;                       ///< beside what was published
-  std::vector<PredictionFolder> predictions;  ///< by name
+  std::vector<predict::PredictionFolder> predictions;  ///< by name
   std::vector<Fact> provenance;               ///< commands, versions, seconds
   std::vector<Fact> spec;                     ///< of the data set, resolved; empty when unknown
   std::vector<std::string> warnings;          ///< files that do not belong together
@@ -38,7 +38,7 @@ ReportInput read_report_input(const std::filesystem::path& dir);
 fit::Calibration read_fitted_parameters(const std::filesystem::path& dir);
 
 /// The DEM runs of a prediction; empty when it was made without --dem.
-std::vector<TestRecord> dem_records(const PredictionFolder& prediction);
+std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction);
 
 /// `document` as lines "outer.inner: value", arrays on one line, null left out. A line that is there already only
 /// gains a file.

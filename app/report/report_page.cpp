@@ -85,10 +85,10 @@ Section predictions(const ReportInput& input) {
   }
   section.blocks.push_back(table_html(prediction_summary(input.predictions)));
   for (std::size_t i = 0; i < input.predictions.size(); ++i) {
-    const PredictionFolder& prediction = input.predictions[i];
+    const predict::PredictionFolder& prediction = input.predictions[i];
     section.blocks.push_back(figure_html(prediction_figure(prediction, i)));
     std::vector<std::string> said;
-    for (const PredictedCurve& drawn : prediction.curves) {
+    for (const predict::PredictedCurve& drawn : prediction.curves) {
       for (const std::string& warning : drawn.prediction.warnings) {
         if (std::find(said.begin(), said.end(), warning) != said.end()) continue;
         said.push_back(warning);

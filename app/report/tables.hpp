@@ -30,11 +30,11 @@ Table profile_table(const fit::Calibration& calibration);
 /// Detected onsets of the steady state, test by test.
 Table steady_table(const fit::Calibration& calibration);
 /// Bias and normalised RMS of every model and start, mean over seeds.
-Table prediction_summary(const std::vector<PredictionFolder>& predictions);
+Table prediction_summary(const std::vector<predict::PredictionFolder>& predictions);
 /// One prediction in full.
-Table prediction_table(const PredictionFolder& prediction);
+Table prediction_table(const predict::PredictionFolder& prediction);
 /// Solver statistics of every curve.
-Table solver_table(const std::vector<PredictionFolder>& predictions);
+Table solver_table(const std::vector<predict::PredictionFolder>& predictions);
 /// Per run: seed, particles, rows, steps, seconds, largest energy ratio, energy residual and inertial number.
 Table run_table(const ReportInput& input);
 /// Steps, particle-steps and seconds of the data set and of each prediction's runs.

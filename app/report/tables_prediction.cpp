@@ -5,7 +5,7 @@
 #include "app/report/table_cells.hpp"
 
 namespace grainlaw::app::report {
-Table prediction_summary(const std::vector<PredictionFolder>& predictions) {
+Table prediction_summary(const std::vector<predict::PredictionFolder>& predictions) {
   Table table;
   table.caption = "Prediction minus DEM, mean over seeds: bias, and RMS over max|DEM|";
   table.source = "predictions/*/comparison.json";
@@ -18,8 +18,8 @@ Table prediction_summary(const std::vector<PredictionFolder>& predictions) {
                    quantity(notation("{s}_{∥} RMS [%]")),
                    quantity(notation("{F}_{∥} bias")),
                    quantity(notation("{F}_{∥} RMS [%]"))};
-  for (const PredictionFolder& prediction : predictions) {
-    for (const CurveComparison& entry : prediction.comparisons) {
+  for (const predict::PredictionFolder& prediction : predictions) {
+    for (const predict::CurveComparison& entry : prediction.comparisons) {
       if (entry.seed) continue;
       std::vector<Text> row{plain(prediction.name), plain(to_string(entry.model)), plain(to_string(entry.initial))};
       for (const char* name : {"P_star", "s_par", "F_par"}) {
@@ -34,7 +34,7 @@ Table prediction_summary(const std::vector<PredictionFolder>& predictions) {
   return table;
 }
 
-Table prediction_table(const PredictionFolder& prediction) {
+Table prediction_table(const predict::PredictionFolder& prediction) {
   Table table;
   table.caption = prediction.name + ": prediction minus DEM, run by run";
   table.source = "predictions/" + prediction.name + "/comparison.json";
@@ -51,7 +51,7 @@ Table prediction_table(const PredictionFolder& prediction) {
                    quantity(notation("at {ν}")),
                    quantity(plain("in band of the mean [%]")),
                    quantity(plain("of a single run [%]"))};
-  for (const CurveComparison& entry : prediction.comparisons) {
+  for (const predict::CurveComparison& entry : prediction.comparisons) {
     for (const predict::QuantityComparison& q : entry.comparison.quantities) {
       table.rows.push_back({plain(to_string(entry.model)), plain(to_string(entry.initial)),
                             plain(entry.seed ? std::to_string(*entry.seed) : "mean"), plain(q.quantity),
@@ -64,7 +64,7 @@ Table prediction_table(const PredictionFolder& prediction) {
   return table;
 }
 
-Table solver_table(const std::vector<PredictionFolder>& predictions) {
+Table solver_table(const std::vector<predict::PredictionFolder>& predictions) {
   Table table;
   table.caption = "What the integration of the law took";
   table.source = "predictions/*/prediction.json";
@@ -78,8 +78,8 @@ Table solver_table(const std::vector<PredictionFolder>& predictions) {
                    quantity(plain("failed error tests")),
                    quantity(plain("restarts")),
                    quantity(plain("seconds"))};
-  for (const PredictionFolder& prediction : predictions) {
-    for (const PredictedCurve& drawn : prediction.curves) {
+  for (const predict::PredictionFolder& prediction : predictions) {
+    for (const predict::PredictedCurve& drawn : prediction.curves) {
       const predict::SolverStatistics& s = drawn.prediction.statistics;
       table.rows.push_back({plain(prediction.name), plain(to_string(drawn.model)), plain(to_string(drawn.initial)),
                             plain(drawn.seed ? std::to_string(*drawn.seed) : kNoNumber),

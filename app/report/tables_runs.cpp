@@ -84,7 +84,7 @@ Table cost_table(const ReportInput& input) {
   add(
       "dataset/", input.tests.size(), [&](std::size_t i) -> const TestRecord& { return input.tests[i]; },
       [&](std::size_t i) -> const RunCost& { return input.costs[i]; });
-  for (const PredictionFolder& prediction : input.predictions) {
+  for (const predict::PredictionFolder& prediction : input.predictions) {
     if (!prediction.dem) continue;
     const auto& tests = prediction.dem->tests;
     add(

@@ -1,7 +1,7 @@
 #pragma once
 // A data set for studies of settings: packings that differ in one law, with costs.
 
-#include "app/files/dataset.hpp"
+#include "model/files/dataset.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::testing {

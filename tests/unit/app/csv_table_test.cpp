@@ -1,4 +1,4 @@
-#include "app/files/csv_table.hpp"
+#include "model/files/csv_table.hpp"
 
 #include <sys/resource.h>
 

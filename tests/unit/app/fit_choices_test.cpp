@@ -1,10 +1,10 @@
-#include "app/study/fit_choices.hpp"
+#include "chain/studies/fit_choices.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "app/study/settings_study.hpp"
+#include "chain/studies/settings_study.hpp"
 #include "fit/data_set.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/study_dataset.hpp"
@@ -12,21 +12,21 @@
 namespace grainlaw::app {
 namespace {
 
-const FitChoice& everything() {
-  static const FitChoice all{testing::study_dataset(1, 0, {{0.70, 0.74, 0.78}}), {}};
+const chain::FitChoice& everything() {
+  static const chain::FitChoice all{testing::study_dataset(1, 0, {{0.70, 0.74, 0.78}}), {}};
   return all;
 }
 
-FitChoice with(const std::string& change) { return chosen(everything(), {change_from(change)}); }
+chain::FitChoice with(const std::string& change) { return chosen(everything(), {chain::change_from(change)}); }
 
-std::vector<TestRecord> records(const FitChoice& choice) {
+std::vector<TestRecord> records(const chain::FitChoice& choice) {
   std::vector<TestRecord> all;
   for (const DatasetTest& test : choice.dataset.tests) all.push_back(test.record);
   return all;
 }
 
 TEST(FitChoices, ThinnedTestsKeepEveryKthRowAndTheirCorners) {
-  const FitChoice thin = with("rows_every=7");
+  const chain::FitChoice thin = with("rows_every=7");
   ASSERT_EQ(thin.dataset.tests.size(), everything().dataset.tests.size());
   for (std::size_t t = 0; t < thin.dataset.tests.size(); ++t) {
     const TestRecord &few = thin.dataset.tests[t].record, &all = everything().dataset.tests[t].record;
@@ -42,19 +42,19 @@ TEST(FitChoices, ThinnedTestsKeepEveryKthRowAndTheirCorners) {
 }
 
 TEST(FitChoices, PackingsAreTheFirstBySeed) {
-  EXPECT_EQ(packings_of(with("packings=2").dataset), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(chain::packings_of(with("packings=2").dataset), (std::vector<std::uint64_t>{1, 2}));
   EXPECT_EQ(with("packings=3").dataset.tests.size(), everything().dataset.tests.size());
   EXPECT_NEAR(cost_of(with("packings=2").dataset).seconds, cost_of(everything().dataset).seconds * 2 / 3, 1e-9);
 }
 
 TEST(FitChoices, DensitiesAreLeftOutPathByPath) {
-  const FitChoice choice = with("densities_every=2");
+  const chain::FitChoice choice = with("densities_every=2");
   for (const DatasetTest& test : choice.dataset.tests) EXPECT_NE(test.record.path.nu, 0.74) << test.record.name;
   EXPECT_EQ(choice.dataset.tests.size(), 3u * (1 + 2 + 2));  // ISO, D2, D2->ISO of each packing
 }
 
 TEST(FitChoices, ShorterShearCostsLess) {
-  const FitChoice choice = with("shear_strain=0.5");
+  const chain::FitChoice choice = with("shear_strain=0.5");
   for (std::size_t t = 0; t < choice.dataset.tests.size(); ++t) {
     const DatasetTest &shorter = choice.dataset.tests[t], &all = everything().dataset.tests[t];
     if (!is_pure_shear(all.record)) {
@@ -76,7 +76,7 @@ TEST(FitChoices, AreRefusedWithWhatToGive) {
 }
 
 TEST(FitChoices, TheUsualOnesCanAllBeMade) {
-  const std::vector<std::string> usual = usual_choices(everything().dataset);
+  const std::vector<std::string> usual = chain::usual_choices(everything().dataset);
   EXPECT_EQ(std::count(usual.begin(), usual.end(), "packings=2"), 1);
   EXPECT_EQ(std::count(usual.begin(), usual.end(), "densities_every=2"), 1);
   for (const std::string& change : usual) EXPECT_NO_THROW(with(change)) << change;

@@ -5,11 +5,11 @@
 #include <cstdlib>
 
 #include "app/exit_code.hpp"
-#include "app/files/probe_columns.hpp"
-#include "app/files/schema.hpp"
-#include "app/files/prediction_series.hpp"
-#include "app/files/series_columns.hpp"
-#include "app/files/spec_file.hpp"
+#include "model/files/probe_columns.hpp"
+#include "model/files/schema.hpp"
+#include "predict/prediction_series.hpp"
+#include "model/files/series_columns.hpp"
+#include "dem/runs/spec_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {
@@ -65,7 +65,7 @@ std::string column_table(const std::vector<Column<Row>>& columns) {
 
 TEST(FormatsDocument, ListsTheColumnsOfTests) { expect_section("series columns", column_table(observation_columns())); }
 TEST(FormatsDocument, ListsTheColumnsOfPredictions) {
-  expect_section("prediction columns", column_table(prediction_columns()));
+  expect_section("prediction columns", column_table(predict::prediction_columns()));
 }
 
 TEST(FormatsDocument, ListsTheColumnsOfProbes) {
@@ -93,7 +93,7 @@ std::string range(const Json& s) {
 }
 
 TEST(FormatsDocument, ListsTheKeysOfASpec) {
-  const Json defaults = Json(spec_to_json(spec_from_json(Json::object(), "defaults")));
+  const Json defaults = Json(dem::spec_to_json(dem::spec_from_json(Json::object(), "defaults")));
   std::string table = "| key | value | default | meaning |\n|---|---|---|---|\n";
   const Json& properties = schema(Schema::spec)["properties"];
   for (const auto& item : properties.items()) {

@@ -1,4 +1,4 @@
-#include "app/runs/job_list.hpp"
+#include "dem/runs/job_list.hpp"
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(JobList, RunsEveryJobOnceAndAfterWhatItNeeds) {
                         order.push_back(i);
                       }});
     }
-    run_jobs(jobs, threads, quiet.printer, {});
+    dem::run_jobs(jobs, threads, quiet.printer, {});
     ASSERT_EQ(order.size(), 20u);
     std::vector<int> position(20);
     for (int k = 0; k < 20; ++k) position[static_cast<std::size_t>(order[static_cast<std::size_t>(k)])] = k;
@@ -56,10 +56,10 @@ TEST(JobList, SharesTheThreads) {
                       in_use -= threads;
                     }});
   }
-  run_jobs(jobs, 3, quiet.printer, {});
+  dem::run_jobs(jobs, 3, quiet.printer, {});
   EXPECT_LE(most, 3);
   // a single job gets all
-  run_jobs({{"only", 1, std::nullopt, [&](int threads, const RunControl&) { given = threads; }}}, 5, quiet.printer, {});
+  dem::run_jobs({{"only", 1, std::nullopt, [&](int threads, const RunControl&) { given = threads; }}}, 5, quiet.printer, {});
   EXPECT_EQ(given, 5);
 }
 
@@ -78,7 +78,7 @@ TEST(JobList, StopsTheOthersWhenOneFailsAndReportsThatOne) {
                   }});
   jobs.push_back({"depends", 1, 1, [&](int, const RunControl&) { ++started; }});
   try {
-    run_jobs(jobs, 2, quiet.printer, {});
+    dem::run_jobs(jobs, 2, quiet.printer, {});
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "energy balance");
@@ -102,9 +102,9 @@ TEST(JobList, StopsOnRequest) {
                       throw Interrupted("stopped");
                     }});
   }
-  EXPECT_THROW(run_jobs(jobs, 2, quiet.printer, stop.get_token()), Interrupted);
+  EXPECT_THROW(dem::run_jobs(jobs, 2, quiet.printer, stop.get_token()), Interrupted);
   EXPECT_EQ(finished, 1);
-  EXPECT_THROW(run_jobs(jobs, 2, quiet.printer, stop.get_token()), Interrupted);  // already requested: nothing starts
+  EXPECT_THROW(dem::run_jobs(jobs, 2, quiet.printer, stop.get_token()), Interrupted);  // already requested: nothing starts
   EXPECT_EQ(finished, 1);
 }
 

@@ -1,4 +1,4 @@
-#include "app/files/json_document.hpp"
+#include "model/files/json_document.hpp"
 
 #include <cmath>
 #include <limits>

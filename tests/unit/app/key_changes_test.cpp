@@ -1,4 +1,4 @@
-#include "app/study/key_changes.hpp"
+#include "chain/studies/key_changes.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@ namespace grainlaw::app {
 namespace {
 
 TEST(KeyChanges, ValuesAreNumbersListsOrText) {
-  EXPECT_EQ(change_from("strain_rate=69").second, Json(69));
-  EXPECT_EQ(change_from("densities=[0.7, 0.8]").second, Json::parse("[0.7, 0.8]"));
-  EXPECT_EQ(change_from("precision=double"), (std::pair{std::string("precision"), Json("double")}));
-  EXPECT_EQ(change_from("comment=a=b").second, Json("a=b"));
-  EXPECT_EQ(change_from("densities=[0.7,").second, Json("[0.7,"));  // no list: SPEC refuses it
-  for (const char* bad : {"strain_rate", "=3", "strain_rate="}) EXPECT_THROW(change_from(bad), InvalidInput) << bad;
+  EXPECT_EQ(chain::change_from("strain_rate=69").second, Json(69));
+  EXPECT_EQ(chain::change_from("densities=[0.7, 0.8]").second, Json::parse("[0.7, 0.8]"));
+  EXPECT_EQ(chain::change_from("precision=double"), (std::pair{std::string("precision"), Json("double")}));
+  EXPECT_EQ(chain::change_from("comment=a=b").second, Json("a=b"));
+  EXPECT_EQ(chain::change_from("densities=[0.7,").second, Json("[0.7,"));  // no list: SPEC refuses it
+  for (const char* bad : {"strain_rate", "=3", "strain_rate="}) EXPECT_THROW(chain::change_from(bad), InvalidInput) << bad;
 }
 
 TEST(KeyChanges, LeadIntoWhatIsThere) {

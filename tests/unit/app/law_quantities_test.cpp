@@ -1,10 +1,10 @@
-#include "app/study/law_quantities.hpp"
+#include "chain/studies/law_quantities.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "app/uncertainty.hpp"
+#include "chain/uncertainty.hpp"
 #include "fit/stages/staged_laws.hpp"
 #include "model/student.hpp"
 #include "predict/bands.hpp"
@@ -33,16 +33,16 @@ fit::Calibration calibrated(int packings) {
 
 TEST(LawQuantities, ErrorsAreThoseOfTheParametersTimesTheSlope) {
   const fit::Calibration c = calibrated(3);
-  const auto quantities = law_quantities(c, {0.70, 0.80}, 3);
+  const auto quantities = chain::law_quantities(c, {0.70, 0.80}, 3);
   ASSERT_EQ(quantities.size(), 13u);
   EXPECT_EQ(quantities[0].name, "P_star@0.70");
   EXPECT_EQ(quantities[0].values(0), c.parameters.isotropic.P_star(0.70));
-  const StudyQuantity& nu_c = quantities.back();
+  const chain::StudyQuantity& nu_c = quantities.back();
   const auto row = static_cast<Eigen::Index>(parameter_index("pressure.nu_c"));
   EXPECT_FALSE(nu_c.in_error);
   EXPECT_NEAR((nu_c.influence - c.errors.influence.row(row)).norm(), 0, 1e-9);
   // s_max = Q_limit + Q_c exp(...): linear in these two; the third by its derivative
-  const StudyQuantity& s_max = quantities[2];
+  const chain::StudyQuantity& s_max = quantities[2];
   ASSERT_EQ(s_max.name, "s_max@0.70");
   const auto at = [&](const char* name) {
     return Eigen::RowVectorXd(c.errors.influence.row(static_cast<Eigen::Index>(parameter_index(name))));
@@ -58,9 +58,9 @@ TEST(LawQuantities, ErrorsAreThoseOfTheParametersTimesTheSlope) {
 TEST(LawQuantities, PredictionsHaveTheErrorOfTheirBands) {
   const fit::Calibration c = calibrated(4);
   const Path path{0.70, Branch::unloading, {{Mode::UNI, direction_of(Mode::UNI), ExtentKind::target_nu, 0.80}}};
-  ASSERT_EQ(richest_rung(c), Rung::evolution);
-  const auto quantities = predicted_quantities(c, path, Rung::evolution, 4, {});
-  const predict::Uncertainty uncertainty = uncertainty_of(c);
+  ASSERT_EQ(chain::richest_rung(c), Rung::evolution);
+  const auto quantities = chain::predicted_quantities(c, path, Rung::evolution, 4, {});
+  const predict::Uncertainty uncertainty = chain::uncertainty_of(c);
   const auto segments = resolve(path);
   predict::Prediction prediction = predict::predict(
       Rung::evolution, c.parameters, c.coupling, segments, predict::state_from_law(c.parameters, path.nu),
@@ -80,10 +80,10 @@ TEST(LawQuantities, PredictionsHaveTheErrorOfTheirBands) {
 TEST(LawQuantities, WhatIsNotIdentifiedIsMissing) {
   fit::Calibration c = calibrated(2);
   c.estimates[parameter_index("anisotropy.a2")].status = fit::Status::not_identified;
-  EXPECT_EQ(richest_rung(c), Rung::reduced);
+  EXPECT_EQ(chain::richest_rung(c), Rung::reduced);
   c.estimates[parameter_index("fabric_rate.Q_c")].status = fit::Status::not_identified;
-  EXPECT_FALSE(richest_rung(c).has_value());
-  for (const StudyQuantity& q : law_quantities(c, {0.70}, 2))
+  EXPECT_FALSE(chain::richest_rung(c).has_value());
+  for (const chain::StudyQuantity& q : chain::law_quantities(c, {0.70}, 2))
     EXPECT_EQ(std::isnan(q.values(0)), q.name == "beta_F@0.70") << q.name;
 }
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "app/files/dataset.hpp"
-#include "app/files/parameters_file.hpp"
-#include "app/files/prediction_series.hpp"
-#include "app/files/series_columns.hpp"
-#include "app/files/series_csv.hpp"
+#include "model/files/dataset.hpp"
+#include "chain/parameters_file.hpp"
+#include "predict/prediction_series.hpp"
+#include "model/files/series_columns.hpp"
+#include "model/files/series_csv.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/german_locale.hpp"
 #include "tests/support/synthetic_dataset.hpp"
@@ -55,7 +55,7 @@ TEST_F(Locale, F12KeepsEveryDouble) {
   const std::vector<TestRecord> tests = records();
   const fit::Calibration fitted = fit::calibrate(tests, {}, {});
   const predict::Prediction before = predicted(fitted);
-  write_parameters(folder_ / "plain.json", {fitted, "", {}});
+  chain::write_parameters(folder_ / "plain.json", {fitted, "", {}});
   int count = 0;
   {
     const GermanLocale german(folder_);
@@ -76,20 +76,20 @@ TEST_F(Locale, F12KeepsEveryDouble) {
     const fit::Calibration again = fit::calibrate(read, {}, {});
 
     // parameters: disk and back, then the prediction
-    write_parameters(folder_ / "parameters.json", {again, "", {}});
+    chain::write_parameters(folder_ / "parameters.json", {again, "", {}});
     EXPECT_EQ(content(folder_ / "parameters.json"), content(folder_ / "plain.json"));
-    const fit::Calibration loaded = read_parameters(folder_ / "parameters.json").calibration;
+    const fit::Calibration loaded = chain::read_parameters(folder_ / "parameters.json").calibration;
     const auto a = fields(fitted.parameters), b = fields(loaded.parameters);
     for (std::size_t i = 0; i < kParameterCount; ++i) {
       if (fitted.estimates[i].status == fit::Status::not_identified) continue;
       count += differ(*a[i], *b[i]) ? 1 : 0;
     }
     const predict::Prediction after = predicted(loaded);
-    count += differing(after.rows, before.rows, prediction_columns());
-    write_prediction_series(folder_ / "p.csv", after.rows);
+    count += differing(after.rows, before.rows, predict::prediction_columns());
+    predict::write_prediction_series(folder_ / "p.csv", after.rows);
     for (const char* name : {"P_star", "s_par", "F_par"}) {
-      const auto from_disk = read_prediction_series(folder_ / "p.csv");
-      for (const auto& column : prediction_columns()) {
+      const auto from_disk = predict::read_prediction_series(folder_ / "p.csv");
+      for (const auto& column : predict::prediction_columns()) {
         if (column.name != name) continue;
         for (std::size_t i = 0; i < before.rows.size(); ++i) {
           count += differ(column.get(from_disk.at(i)), column.get(before.rows[i])) ? 1 : 0;

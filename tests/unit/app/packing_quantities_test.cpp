@@ -1,4 +1,4 @@
-#include "app/study/packing_quantities.hpp"
+#include "chain/studies/packing_quantities.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@ namespace {
 TEST(PackingQuantities, AreMeansOfPackingsByThemselves) {
   // F_max of the three packings is 1.1 (0.98, 1, 1.02) times the published
   const std::vector<std::uint64_t> seeds{1, 2, 3};
-  const auto ours = packing_quantities(testing::study_dataset(1.1, 0.02), seeds);
-  const auto published = packing_quantities(testing::study_dataset(1, 0), seeds);
+  const auto ours = chain::packing_quantities(testing::study_dataset(1.1, 0.02), seeds);
+  const auto published = chain::packing_quantities(testing::study_dataset(1, 0), seeds);
   ASSERT_EQ(ours.size(), 13u);
   for (std::size_t q = 0; q < ours.size(); ++q) {
     const bool fabric = ours[q].name.starts_with("F_max");
@@ -32,8 +32,8 @@ TEST(PackingQuantities, APackingThatDoesNotShowItIsLeftOut) {
     if (test.record.packing.seed == 3 && is_pure_shear(test.record))
       std::erase_if(test.record.rows, [](const Observation& row) { return row.eps_dev > 0.005; });
   }
-  const auto published = packing_quantities(testing::study_dataset(1, 0), {1, 2, 3});
-  const auto three = packing_quantities(dataset, {1, 2, 3}), two = packing_quantities(dataset, {1, 3});
+  const auto published = chain::packing_quantities(testing::study_dataset(1, 0), {1, 2, 3});
+  const auto three = chain::packing_quantities(dataset, {1, 2, 3}), two = chain::packing_quantities(dataset, {1, 3});
   for (std::size_t q = 0; q < three.size(); ++q) {
     if (!three[q].name.starts_with("F_max")) continue;
     const double value = published[q].values(0);

@@ -1,11 +1,11 @@
 // PATH and TEST files.
 #include <cmath>
 #include <numbers>
-#include "app/files/path_file.hpp"
-#include "app/files/path_json.hpp"
-#include "app/files/spec_file.hpp"
-#include "app/files/test_file.hpp"
-#include "app/runs/new_packings.hpp"
+#include "model/files/path_file.hpp"
+#include "model/files/path_json.hpp"
+#include "dem/runs/spec_file.hpp"
+#include "dem/runs/test_file.hpp"
+#include "dem/runs/new_packings.hpp"
 #include "dem/files/state_file.hpp"
 
 #include "tests/support/temporary_folder.hpp"
@@ -23,7 +23,7 @@ class PathFiles : public testing::TemporaryFolder {
   }
   std::string test_refusal(const std::string& text) const {
     const auto file = put("t.json", text);
-    return without_folder(refusal([&] { read_test(file); }));
+    return without_folder(refusal([&] { dem::read_test(file); }));
   }
   std::string without_folder(std::string message) const {
     const std::string folder = folder_.string() + "/";
@@ -56,12 +56,12 @@ TEST_F(PathFiles, GivePaths) {
 
 TEST(Examples, AreValidInput) {
   const std::filesystem::path quickstart = std::filesystem::path(GRAINLAW_SOURCE_DIR) / "examples" / "quickstart";
-  const Spec spec = read_spec(quickstart / "spec.json");
+  const dem::Spec spec = dem::read_spec(quickstart / "spec.json");
   EXPECT_GE(spec.densities.size(), 5u);
   for (const char* name : {"uniaxial-0.695.json", "uniaxial-0.728.json"}) {
     const PathFile path = read_path(quickstart / name);
     // its packings are shared by the predictions and are none of the calibration's
-    EXPECT_EQ(plan(spec, path, new_seeds(spec, path, {}, name), name).front().preparation.keep_unloading, spec.keep);
+    EXPECT_EQ(plan(spec, path, dem::new_seeds(spec, path, {}, name), name).front().preparation.keep_unloading, spec.keep);
   }
 }
 
@@ -106,7 +106,7 @@ TEST_F(PathFiles, CyclesBecomeLegs) {
   expect(strains(R"({"mode": "D2", "cycles": {"amplitude": 0.05, "count": 2, "one_sided": true}})"), {0, -a, 0, -a, 0});
   expect(strains(R"({"mode": "ISO", "cycles": {"amplitude": 0.06, "count": 1, "one_sided": true}})"), {0, -0.02, 0});
 
-  EXPECT_EQ(read_test(put("t.json", R"({"initial": {"nu": 0.7}, "segments": [
+  EXPECT_EQ(dem::read_test(put("t.json", R"({"initial": {"nu": 0.7}, "segments": [
       {"mode": "D2", "cycles": {"amplitude": 0.05, "count": 3}}]})"))
                 .path.segments.size(),
             7u);
@@ -223,17 +223,17 @@ TEST_F(PathFiles, AreRefusedNamingTheSegment) {
 }
 
 TEST_F(PathFiles, TestsStartWhereTheySay) {
-  TestFile test = read_test(
+  dem::TestFile test = dem::read_test(
       put("t.json", R"({"particles": 64, "seed": 9, "keep": [{"nu": 0.7}, {"nu": 0.75, "branch": "loading"}]})"));
-  EXPECT_EQ(test.start, Start::preparation);
+  EXPECT_EQ(test.start, dem::Start::preparation);
   EXPECT_EQ(test.preparation.packing.seed, 9u);
   EXPECT_EQ(test.preparation.keep_unloading, std::vector<double>{0.7});
   EXPECT_EQ(test.preparation.keep_loading, std::vector<double>{0.75});
 
-  test = read_test(put(
+  test = dem::read_test(put(
       "t.json",
       R"({"initial": {"nu": 0.7, "branch": "loading"}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.1}}]})"));
-  EXPECT_EQ(test.start, Start::kept);
+  EXPECT_EQ(test.start, dem::Start::kept);
   EXPECT_EQ(test.preparation.keep_loading, std::vector<double>{0.7});
   EXPECT_EQ(test.path.nu, 0.7);
 
@@ -243,14 +243,14 @@ TEST_F(PathFiles, TestsStartWhereTheySay) {
       "001,0,0,0\n3,0.001,0.001,0.005,0.001,0,0,0\n");
   const std::string cell = R"("cell": [[0.01,0,0],[0,0.01,0],[0,0,0.01]])";
   const std::string uni = R"("segments": [{"mode": "UNI", "extent": {"eps_dev": 0.1}}])";
-  test = read_test(put("t.json", R"({"spheres": "s.csv", )" + cell + ", " + uni + "}"));
-  EXPECT_EQ(test.start, Start::spheres);
+  test = dem::read_test(put("t.json", R"({"spheres": "s.csv", )" + cell + ", " + uni + "}"));
+  EXPECT_EQ(test.start, dem::Start::spheres);
   ASSERT_TRUE(test.given);
   EXPECT_NEAR(test.path.nu, 4 * 4.0 / 3 * std::numbers::pi * 1e-9 / 1e-6, 1e-15);
 
   dem::write_state(folder_ / "a.state", *test.given);
-  test = read_test(put("t.json", R"({"state": "a.state", )" + uni + "}"));
-  EXPECT_EQ(test.start, Start::state);
+  test = dem::read_test(put("t.json", R"({"state": "a.state", )" + uni + "}"));
+  EXPECT_EQ(test.start, dem::Start::state);
   EXPECT_EQ(test.given->packing.size(), 4u);
   const std::string digest = test.given_digest;
   EXPECT_EQ(digest.size(), 64u);

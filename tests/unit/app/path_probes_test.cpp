@@ -1,14 +1,14 @@
 // Probes along a test: they do not change it, survive its interruptions, and are where they are asked for.
-#include "app/runs/path_probes.hpp"
+#include "dem/runs/path_probes.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/files/csv_table.hpp"
-#include "app/runs/run_store.hpp"
-#include "app/runs/runs.hpp"
+#include "model/files/csv_table.hpp"
+#include "dem/runs/run_store.hpp"
+#include "dem/runs/runs.hpp"
 #include "dem/files/state_file.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -36,13 +36,13 @@ class PathProbesTest : public testing::TemporaryFolder {
              {Mode::ISO, direction_of(Mode::ISO), ExtentKind::eps_vol, 0.015}}};
   }
 
-  fs::path run(const TestStart& start, const Path& path, const ResumePolicy& policy = {},
+  fs::path run(const dem::TestStart& start, const Path& path, const dem::ResumePolicy& policy = {},
                const RunControl& control = {}) {
-    return store_.folder(ensure_test(store_, start, path, policy, control).at("key"));
+    return store_.folder(dem::ensure_test(store_, start, path, policy, control).at("key"));
   }
 
-  TestStart probed(ProbePlan plan = {0.01, {1e-6}}) const {
-    TestStart start = start_;
+  dem::TestStart probed(dem::ProbePlan plan = {0.01, {1e-6}}) const {
+    dem::TestStart start = start_;
     start.probes = std::move(plan);
     return start;
   }
@@ -56,8 +56,8 @@ class PathProbesTest : public testing::TemporaryFolder {
     return values;
   }
 
-  RunStore store_;
-  TestStart start_;
+  dem::RunStore store_;
+  dem::TestStart start_;
 };
 
 TEST_F(PathProbesTest, DoNotDisturbTheRun) {
@@ -104,13 +104,13 @@ TEST_F(PathProbesTest, AreWhereThePathHasGrown) {
 }
 
 TEST_F(PathProbesTest, SurviveInterruptions) {
-  const TestStart start = probed();
+  const dem::TestStart start = probed();
   const std::string expected = content(run(start, shear_then_compress()) / "probes.csv");
-  const fs::path folder = store_.folder(run_key(test_request(start, shear_then_compress())));
+  const fs::path folder = store_.folder(dem::run_key(dem::test_request(start, shear_then_compress())));
   const auto interrupted_after = [&](int probes) {
     fs::remove(folder / "run.json");
-    for (int reports = 0; !fs::exists(folder / kProgress) ||
-                          content(folder / kProgress).find(fmt::format("\"places\": {}", probes)) == std::string::npos;
+    for (int reports = 0; !fs::exists(folder / dem::kProgress) ||
+                          content(folder / dem::kProgress).find(fmt::format("\"places\": {}", probes)) == std::string::npos;
          ++reports) {
       std::stop_source stop;
       int seen = 0;
@@ -126,9 +126,9 @@ TEST_F(PathProbesTest, SurviveInterruptions) {
   EXPECT_EQ(content(run(start, shear_then_compress()) / "probes.csv"), expected);
 
   interrupted_after(1);
-  std::string damaged = content(folder / kProgress);
+  std::string damaged = content(folder / dem::kProgress);
   damaged[damaged.find("rows") + 40] ^= 1;
-  std::ofstream(folder / kProgress, std::ios::binary) << damaged;
+  std::ofstream(folder / dem::kProgress, std::ios::binary) << damaged;
   std::vector<std::string> log;
   run(start, shear_then_compress(), {true, 60, [&](const std::string& text) { log.push_back(text); }});
   EXPECT_EQ(content(folder / "probes.csv"), expected);

@@ -1,26 +1,26 @@
-#include "app/plan/plan_file.hpp"
+#include "chain/planning/plan_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "app/files/schema.hpp"
+#include "model/files/schema.hpp"
 
 namespace grainlaw::app {
 namespace {
 
 TEST(PlanFile, IsWhatItsSchemaSays) {
-  const PrecisionTarget target{
+  const chain::PrecisionTarget target{
       0.02, {"P_star"}, {0.72, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.2}}}, 60};
-  TargetRun run;
+  chain::TargetRun run;
   run.pilot.scale = {{400, 4, 1104, 0.1, 4, 0.3}, 138};
   run.pilot.reference = run.pilot.scale.pilot;
-  QuantityFindings q{"P_star", 0.03, {{0.3, 1e-4, 2e-4}}, {}};
-  q.biases[0] = bias_of(0.05, 0.01, 2);
+  chain::QuantityFindings q{"P_star", 0.03, {{0.3, 1e-4, 2e-4}}, {}};
+  q.biases[0] = chain::bias_of(0.05, 0.01, 2);
   q.biases[1] = {std::nan(""), std::nan(""), 1e-3, 0};
   run.pilot.quantities = {q};
   run.candidates = {{{800, 5, 552, 0.1, 4, 0.3}, {}, {}, 0.018, 12.5, true}};
-  TargetRound round{run.pilot.reference,
+  chain::TargetRound round{run.pilot.reference,
                     std::nan(""),
                     std::nan(""),
                     9,
@@ -29,7 +29,7 @@ TEST(PlanFile, IsWhatItsSchemaSays) {
                     0.04};
   round.errors = {{"P_star", std::nan(""), {0.01, 0.002, 0.003}}};
   run.rounds = {round};
-  const Json document = Json::parse(plan_to_json(run, target, {{"particles", 400}}, {{"grainlaw", "x"}}).dump());
+  const Json document = Json::parse(chain::plan_to_json(run, target, {{"particles", 400}}, {{"grainlaw", "x"}}).dump());
   EXPECT_NO_THROW(check_schema(document, Schema::plan, "plan.json"));
   const Json& rate = document["pilot"]["quantities"][0]["biases"][0];
   EXPECT_EQ(rate["cause"], "strain_rate");

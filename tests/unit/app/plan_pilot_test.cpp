@@ -1,4 +1,4 @@
-#include "app/plan/plan_pilot.hpp"
+#include "chain/planning/plan_pilot.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,10 +40,10 @@ std::vector<TestRecord> square(double a, double b) {
 
 TEST(PlanPilot, TellsWhatPackingsShareFromWhatTestsHave) {
   // deviations of packings +-a: mean squares 2 (2 a^2) with one degree of freedom; within 4 b^2 with one
-  const auto s = steady_scatter(square(0.1, 0.02), "s_par", {0.3});
+  const auto s = chain::steady_scatter(square(0.1, 0.02), "s_par", {0.3});
   EXPECT_NEAR(s[0].within, 4 * 0.02 * 0.02, 1e-12);
   EXPECT_NEAR(s[0].between, 2 * 0.1 * 0.1 - 4 * 0.02 * 0.02 / 2, 1e-12);
-  EXPECT_EQ(steady_scatter(square(0, 0.02), "s_par", {0.3})[0].between, 0);
+  EXPECT_EQ(chain::steady_scatter(square(0, 0.02), "s_par", {0.3})[0].between, 0);
 }
 
 TEST(PlanPilot, SteadyMeansEndWhereTheShearWould) {
@@ -51,12 +51,12 @@ TEST(PlanPilot, SteadyMeansEndWhereTheShearWould) {
   for (const std::uint64_t seed : {1u, 2u}) {
     for (const double nu : {0.7, 0.8}) tests.push_back(shear(nu, seed, 1, 1 + 0.1 * static_cast<double>(seed)));
   }
-  const auto s = steady_scatter(tests, "P_star", {0.21, 0.3});
+  const auto s = chain::steady_scatter(tests, "P_star", {0.21, 0.3});
   EXPECT_NEAR(s[0].between, 2 * std::pow(0.05 / 1.15, 2), 1e-12);
   EXPECT_LT(s[1].between, s[0].between);
-  EXPECT_THROW(steady_scatter(tests, "P_star", {0.14}), Error);
+  EXPECT_THROW(chain::steady_scatter(tests, "P_star", {0.14}), Error);
   tests.resize(2);  // one packing
-  EXPECT_THROW(steady_scatter(tests, "P_star", {0.3}), Error);
+  EXPECT_THROW(chain::steady_scatter(tests, "P_star", {0.3}), Error);
 }
 
 TEST(PlanPilot, DifferencesArePairedOrNot) {
@@ -66,8 +66,8 @@ TEST(PlanPilot, DifferencesArePairedOrNot) {
     fine.push_back(shear(0.7, seed, x, x));
     coarse.push_back(shear(0.7, seed, x + 0.2, x + 0.2));
   }
-  const Difference paired = difference_of(coarse, fine, "F_par", true),
-                   not_paired = difference_of(coarse, fine, "F_par", false);
+  const Difference paired = chain::difference_of(coarse, fine, "F_par", true),
+                   not_paired = chain::difference_of(coarse, fine, "F_par", false);
   EXPECT_NEAR(paired.mean, 0.2, 1e-12);
   EXPECT_NEAR(paired.standard_error, 0, 1e-12);
   EXPECT_NEAR(not_paired.mean, 0.2, 1e-12);
@@ -89,7 +89,7 @@ TEST(PlanPilot, SecondsAreTakenFromTheRuns) {
       dataset.tests.push_back({test, "", "preparation" + std::to_string(seed), {0, 0, 10}, {}});
     dataset.seeds.push_back(seed);
   }
-  const CostRates rates = cost_rates(dataset, {6000, 5000, 200, 1}, 12, 2);
+  const chain::CostRates rates = chain::cost_rates(dataset, {6000, 5000, 200, 1}, 12, 2);
   EXPECT_DOUBLE_EQ(rates.particle_step, 4.0 / 5000 / 2);
   EXPECT_DOUBLE_EQ(rates.relaxed, (10 - 6000 * 4.0 / 5000) / 200 / 2);
   EXPECT_DOUBLE_EQ(rates.fitted_test, 6);

@@ -1,4 +1,4 @@
-#include "app/plan/prediction_error.hpp"
+#include "chain/planning/prediction_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,9 +52,9 @@ std::vector<TestRecord> rehearsals(const fit::Calibration& c, double bias, doubl
   return tests;
 }
 
-TEST(PredictionError, IsTheBandsHalfWidth) {
-  const PredictionError one = prediction_error(calibrated(0.002), shear(), {}),
-                        two = prediction_error(calibrated(0.004), shear(), {});
+TEST(chain::PredictionError, IsTheBandsHalfWidth) {
+  const chain::PredictionError one = chain::prediction_error(calibrated(0.002), shear(), {}),
+                        two = chain::prediction_error(calibrated(0.004), shear(), {});
   EXPECT_EQ(one.rung, Rung::evolution);
   ASSERT_EQ(one.quantities.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -63,57 +63,57 @@ TEST(PredictionError, IsTheBandsHalfWidth) {
     EXPECT_NEAR(two.quantities[i].half_width, 2 * one.quantities[i].half_width, 1e-9);
     EXPECT_TRUE(std::isnan(one.quantities[i].discrepancy));  // no residuals
   }
-  EXPECT_TRUE(std::isnan(prediction_error(calibrated(0), shear(), {}).quantities[0].half_width));
+  EXPECT_TRUE(std::isnan(chain::prediction_error(calibrated(0), shear(), {}).quantities[0].half_width));
 }
 
-TEST(PredictionError, APathWithoutShearHasPressureAlone) {
+TEST(chain::PredictionError, APathWithoutShearHasPressureAlone) {
   const Path iso{0.72, Branch::unloading, {{Mode::ISO, direction_of(Mode::ISO), ExtentKind::target_nu, 0.8}}};
-  const PredictionError e = prediction_error(calibrated(0.002), iso, {});
+  const chain::PredictionError e = chain::prediction_error(calibrated(0.002), iso, {});
   ASSERT_EQ(e.quantities.size(), 1u);
   EXPECT_EQ(e.quantities[0].quantity, "P_star");
 }
 
-TEST(PredictionError, NothingIsKnownByALawThatCannotPredict) {
+TEST(chain::PredictionError, NothingIsKnownByALawThatCannotPredict) {
   fit::Calibration c = calibrated(0.002);
   c.estimates[parameter_index("anisotropy.a2")].status = fit::Status::not_identified;
-  EXPECT_EQ(prediction_error(c, shear(), {}).rung, Rung::reduced);
+  EXPECT_EQ(chain::prediction_error(c, shear(), {}).rung, Rung::reduced);
   c.estimates[parameter_index("fabric_rate.Q_c")].status = fit::Status::not_identified;
-  const PredictionError e = prediction_error(c, shear(), {});
+  const chain::PredictionError e = chain::prediction_error(c, shear(), {});
   ASSERT_EQ(e.quantities.size(), 3u);
   EXPECT_TRUE(std::isnan(e.quantities[0].half_width));
 }
 
-TEST(PredictionError, DiscrepancyIsWhatChanceDoesNotExplain) {
+TEST(chain::PredictionError, DiscrepancyIsWhatChanceDoesNotExplain) {
   const fit::Calibration c = calibrated(1e-7);  // a band of nearly no width
-  const PredictionError exact = prediction_error(c, shear(), rehearsals(c, 0, 0));
+  const chain::PredictionError exact = chain::prediction_error(c, shear(), rehearsals(c, 0, 0));
   EXPECT_EQ(exact.quantities[2].quantity, "F_par");
   EXPECT_LT(exact.quantities[0].discrepancy, 1e-5);
   // P* is nearly the same along the path, as is its largest value
-  const QuantityPrecision off = prediction_error(c, shear(), rehearsals(c, 0.05, 0)).quantities[0];
+  const chain::QuantityPrecision off = chain::prediction_error(c, shear(), rehearsals(c, 0.05, 0)).quantities[0];
   EXPECT_NEAR(off.discrepancy, 0.05, 0.01);
   EXPECT_NEAR(off.discrepancy_min, off.discrepancy, 1e-4);
   // four packings of +-.03 have a mean with e^2 = .03^2/3
-  const QuantityPrecision noisy = prediction_error(c, shear(), rehearsals(c, 0.05, 0.03)).quantities[0];
+  const chain::QuantityPrecision noisy = chain::prediction_error(c, shear(), rehearsals(c, 0.05, 0.03)).quantities[0];
   const double e2 = 0.03 * 0.03 / 3, scale = off.discrepancy / 0.05;
   EXPECT_NEAR(noisy.discrepancy / scale, std::sqrt(0.05 * 0.05 - e2), 1e-4);
   const double D2 = 0.05 * 0.05 - e2, error = std::sqrt(4 * D2 * e2 + 2 * e2 * e2);
   EXPECT_NEAR(noisy.discrepancy_min / scale, std::sqrt(std::max(0.0, D2 - 2 * error)), 1e-3);
-  EXPECT_EQ(prediction_error(c, shear(), rehearsals(c, 0, 0.1)).quantities[0].discrepancy, 0);
+  EXPECT_EQ(chain::prediction_error(c, shear(), rehearsals(c, 0, 0.1)).quantities[0].discrepancy, 0);
 }
 
-TEST(PredictionError, AWideBandExplainsAsMuchAsChance) {
+TEST(chain::PredictionError, AWideBandExplainsAsMuchAsChance) {
   const fit::Calibration c = calibrated(0.002);
-  const double width = prediction_error(c, shear(), {}).quantities[0].half_width;
+  const double width = chain::prediction_error(c, shear(), {}).quantities[0].half_width;
   const double within = 0.2 * width;
-  EXPECT_EQ(prediction_error(c, shear(), rehearsals(c, within, 0)).quantities[0].discrepancy, 0);
-  EXPECT_GT(prediction_error(c, shear(), rehearsals(c, 2 * width, 0)).quantities[0].discrepancy_min, 0);
+  EXPECT_EQ(chain::prediction_error(c, shear(), rehearsals(c, within, 0)).quantities[0].discrepancy, 0);
+  EXPECT_GT(chain::prediction_error(c, shear(), rehearsals(c, 2 * width, 0)).quantities[0].discrepancy_min, 0);
 }
 
-TEST(PredictionError, OneRehearsalSaysNothing) {
+TEST(chain::PredictionError, OneRehearsalSaysNothing) {
   const fit::Calibration c = calibrated(0.002);
   auto one = rehearsals(c, 0.5, 0);
   one.resize(1);
-  EXPECT_TRUE(std::isnan(prediction_error(c, shear(), one).quantities[0].discrepancy));
+  EXPECT_TRUE(std::isnan(chain::prediction_error(c, shear(), one).quantities[0].discrepancy));
 }
 
 }  // namespace

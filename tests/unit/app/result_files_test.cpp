@@ -3,12 +3,12 @@
 #include <cstring>
 #include <utility>
 
-#include "app/digest.hpp"
+#include "model/files/digest.hpp"
 #include "app/files/calibration_file.hpp"
-#include "app/files/dataset.hpp"
-#include "app/files/parameters_file.hpp"
-#include "app/files/prediction_files.hpp"
-#include "app/files/series_csv.hpp"
+#include "model/files/dataset.hpp"
+#include "chain/parameters_file.hpp"
+#include "predict/prediction_files.hpp"
+#include "model/files/series_csv.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/german_locale.hpp"
 #include "tests/support/synthetic_dataset.hpp"
@@ -191,8 +191,8 @@ void expect_same(const fit::Calibration& a, const fit::Calibration& b) {
 
 TEST_F(ResultFiles, ParametersAreReadBackBitForBit) {
   const fit::Calibration c = odd_calibration();
-  write_parameters(folder_ / "parameters.json", {c, std::string(64, 'b'), {{"command", "test"}}});
-  const ParametersFile read = read_parameters(folder_ / "parameters.json");
+  chain::write_parameters(folder_ / "parameters.json", {c, std::string(64, 'b'), {{"command", "test"}}});
+  const chain::ParametersFile read = chain::read_parameters(folder_ / "parameters.json");
   expect_same(c, read.calibration);
   EXPECT_EQ(read.dataset_digest, std::string(64, 'b'));
   const Json file = read_json(folder_ / "parameters.json", JsonSource::own);
@@ -204,14 +204,14 @@ TEST_F(ResultFiles, ParametersAreReadBackBitForBit) {
 // Hard case F12.
 TEST_F(ResultFiles, F12DoNotDependOnTheLocale) {
   const fit::Calibration c = odd_calibration();
-  write_parameters(folder_ / "plain.json", {c, "", {}});
-  ParametersFile read;
+  chain::write_parameters(folder_ / "plain.json", {c, "", {}});
+  chain::ParametersFile read;
   Dataset written, dataset;
   {
     const testing::GermanLocale german(folder_);
     if (!german.in_c()) GTEST_LOG_(INFO) << "no German locale could be made; only the C++ locale was changed";
-    write_parameters(folder_ / "german.json", {c, "", {}});
-    read = read_parameters(folder_ / "plain.json");
+    chain::write_parameters(folder_ / "german.json", {c, "", {}});
+    read = chain::read_parameters(folder_ / "plain.json");
     written = small_dataset(folder_);
     dataset = read_dataset(folder_);
   }
@@ -232,13 +232,13 @@ TEST_F(ResultFiles, F12DoNotDependOnTheLocale) {
 }
 
 TEST_F(ResultFiles, DoubtfulParametersAreRefused) {
-  write_parameters(folder_ / "p.json", {odd_calibration(), "", {}});
+  chain::write_parameters(folder_ / "p.json", {odd_calibration(), "", {}});
   const Json good = read_json(folder_ / "p.json", JsonSource::own);
   const auto message = [&](const std::function<void(Json&)>& damage) {
     Json bad = good;
     damage(bad);
     write_json(folder_ / "bad.json", OrderedJson(bad));
-    return refusal([&] { read_parameters(folder_ / "bad.json"); });
+    return refusal([&] { chain::read_parameters(folder_ / "bad.json"); });
   };
   EXPECT_NE(message([](Json& j) {
               j["parameters"]["pressure.p0"]["value"] = nullptr;
@@ -259,21 +259,21 @@ TEST_F(ResultFiles, DoubtfulParametersAreRefused) {
   EXPECT_NE(message([](Json& j) { j["ranges"]["nu"] = {0.7}; }).find("ranges.nu"), std::string::npos);
   EXPECT_NE(message([](Json& j) { j.erase("coupling"); }).find("misses the key 'coupling'"), std::string::npos);
 
-  const ParametersFile read = read_parameters(folder_ / "p.json");
-  EXPECT_EQ(refusal([&] { require_parameters(read, Rung::evolution, "p.json"); }),
+  const chain::ParametersFile read = chain::read_parameters(folder_ / "p.json");
+  EXPECT_EQ(refusal([&] { chain::require_parameters(read, Rung::evolution, "p.json"); }),
             "accepted");  // single coupling reads a0
-  ParametersFile energy = read;
+  chain::ParametersFile energy = read;
   energy.calibration.coupling = Coupling::energy;
   EXPECT_NE(refusal([&] {
-              require_parameters(energy, Rung::evolution, "p.json");
+              chain::require_parameters(energy, Rung::evolution, "p.json");
             }).find("p.json: parameters.anisotropy.a2: is not identified"),
             std::string::npos);
-  EXPECT_EQ(refusal([&] { require_parameters(energy, Rung::reduced, "p.json"); }), "accepted");
+  EXPECT_EQ(refusal([&] { chain::require_parameters(energy, Rung::reduced, "p.json"); }), "accepted");
   energy.calibration.estimates[parameter_index("stress_rate.alpha")].status = fit::Status::not_identified;
-  EXPECT_NE(refusal([&] { require_parameters(energy, Rung::reduced, "p.json"); }).find("stress_rate.alpha"),
+  EXPECT_NE(refusal([&] { chain::require_parameters(energy, Rung::reduced, "p.json"); }).find("stress_rate.alpha"),
             std::string::npos);
   energy.calibration.parameters.stress_rate.Q_c = 0;  // the exponential is gone, and its decay with it
-  EXPECT_EQ(refusal([&] { require_parameters(energy, Rung::reduced, "p.json"); }), "accepted");
+  EXPECT_EQ(refusal([&] { chain::require_parameters(energy, Rung::reduced, "p.json"); }), "accepted");
 }
 
 TEST_F(ResultFiles, CalibrationIsReadBack) {
@@ -320,16 +320,16 @@ TEST_F(ResultFiles, CalibrationIsReadBack) {
             std::string::npos);
 }
 
-PredictionFolder small_prediction(const std::filesystem::path& folder) {
+predict::PredictionFolder small_prediction(const std::filesystem::path& folder) {
   std::filesystem::create_directory(folder / "dem");
-  PredictionFolder content;
+  predict::PredictionFolder content;
   content.dem = small_dataset(folder / "dem");
   const TestRecord& test = content.dem->tests[1].record;
   content.path = test.path;
   const auto segments = resolve(test.path);
   const auto law = testing::synthetic_truth();
   for (const std::uint64_t seed : {3u, 4u}) {
-    PredictedCurve curve{Rung::evolution, Initial::measured, seed, fmt::format("evolution-measured-s{}.csv", seed), {}};
+    predict::PredictedCurve curve{Rung::evolution, predict::Initial::measured, seed, fmt::format("evolution-measured-s{}.csv", seed), {}};
     curve.prediction =
         predict::predict(curve.model, law, Coupling::energy, segments, predict::state_from_law(law, test.path.nu),
                          predict::points_of(test), {}, {}, {});
@@ -349,12 +349,12 @@ PredictionFolder small_prediction(const std::filesystem::path& folder) {
 }
 
 TEST_F(ResultFiles, PredictionIsReadBack) {
-  const PredictionFolder written = small_prediction(folder_);
-  write_prediction(folder_, written);
-  const PredictionFolder read = read_prediction(folder_);
+  const predict::PredictionFolder written = small_prediction(folder_);
+  predict::write_prediction(folder_, written);
+  const predict::PredictionFolder read = predict::read_prediction(folder_);
   ASSERT_EQ(read.curves.size(), 2u);
   EXPECT_EQ(read.curves[1].seed, 4u);
-  EXPECT_EQ(read.curves[1].initial, Initial::measured);
+  EXPECT_EQ(read.curves[1].initial, predict::Initial::measured);
   EXPECT_EQ(read.curves[1].prediction.statistics.steps, written.curves[1].prediction.statistics.steps);
   EXPECT_EQ(read.curves[1].prediction.warnings, std::vector<std::string>{"outside"});
   ASSERT_EQ(read.curves[0].prediction.rows.size(), written.curves[0].prediction.rows.size());
@@ -373,12 +373,12 @@ TEST_F(ResultFiles, PredictionIsReadBack) {
   ASSERT_TRUE(read.dem);
   EXPECT_EQ(read.dem->digest, written.dem->digest);
   std::filesystem::remove(folder_ / "comparison.json");
-  EXPECT_NE(refusal([&] { read_prediction(folder_); }).find("comparison.json"), std::string::npos);
+  EXPECT_NE(refusal([&] { predict::read_prediction(folder_); }).find("comparison.json"), std::string::npos);
 }
 
 TEST_F(ResultFiles, MeanOverSeedsIsTheMeanAndKeepsTheLargest) {
-  const PredictionFolder content = small_prediction(folder_);
-  const auto means = mean_over_seeds(content.comparisons);
+  const predict::PredictionFolder content = small_prediction(folder_);
+  const auto means = predict::mean_over_seeds(content.comparisons);
   ASSERT_EQ(means.size(), 1u);
   const auto &a = content.comparisons[0].comparison.quantities[0], &b = content.comparisons[1].comparison.quantities[0];
   const auto& mean = means[0].comparison.quantities[0];

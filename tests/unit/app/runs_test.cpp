@@ -1,15 +1,15 @@
 // Content-addressed runs: keys, store, and the two kinds of run with very small packings.
-#include "app/runs/runs.hpp"
+#include "dem/runs/runs.hpp"
 
 #include <map>
 #include <thread>
 
-#include "app/digest.hpp"
-#include "app/files/preparation_json.hpp"
-#include "app/files/series_csv.hpp"
-#include "app/runs/dataset_runs.hpp"
-#include "app/runs/new_packings.hpp"
-#include "app/runs/preparation_folder.hpp"
+#include "model/files/digest.hpp"
+#include "dem/runs/preparation_json.hpp"
+#include "model/files/series_csv.hpp"
+#include "dem/runs/dataset_runs.hpp"
+#include "dem/runs/new_packings.hpp"
+#include "dem/runs/preparation_folder.hpp"
 #include "dem/files/state_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -36,12 +36,12 @@ Path d2(double nu = 0.74) {
 class Runs : public testing::TemporaryFolder {};
 
 TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
-  const std::string key = run_key(preparation_request(tiny()));
+  const std::string key = dem::run_key(dem::preparation_request(tiny()));
   EXPECT_EQ(key.size(), 64u);
   const auto changed = [&](const std::function<void(dem::PreparationOptions&)>& change) {
     dem::PreparationOptions options = tiny();
     change(options);
-    return run_key(preparation_request(options)) != key;
+    return dem::run_key(dem::preparation_request(options)) != key;
   };
   using O = dem::PreparationOptions;
   EXPECT_FALSE(changed([](O& o) { o.engine.threads = 7; }));
@@ -71,20 +71,20 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
   EXPECT_TRUE(changed([](O& o) { o.rows = 21; }));
 
   const auto test_key = [](const dem::PreparationOptions& o, const Path& path) {
-    return run_key(test_request({o, o.rows, {}, "", false}, path));
+    return dem::run_key(dem::test_request({o, o.rows, {}, "", false}, path));
   };
   dem::PreparationOptions more = tiny();
   more.keep_unloading = {0.72, 0.74};  // another state kept on the way changes no test
   EXPECT_EQ(test_key(more, d2()), test_key(tiny(), d2()));
-  EXPECT_NE(run_key(test_request({tiny(), 21, {}, "", false}, d2())), test_key(tiny(), d2()));
+  EXPECT_NE(dem::run_key(dem::test_request({tiny(), 21, {}, "", false}, d2())), test_key(tiny(), d2()));
   more = tiny();
   more.rows = 77;  // of the branches
-  EXPECT_EQ(run_key(test_request({more, 20, {}, "", false}, d2())),
-            run_key(test_request({tiny(), 20, {}, "", false}, d2())));
+  EXPECT_EQ(dem::run_key(dem::test_request({more, 20, {}, "", false}, d2())),
+            dem::run_key(dem::test_request({tiny(), 20, {}, "", false}, d2())));
   dem::PreparationOptions minimised = tiny();
   minimised.drive.quasi_static_step = more.drive.quasi_static_step = 1e-3;  // rows of the branches cut its steps
-  EXPECT_NE(run_key(test_request({more, 20, {}, "", false}, d2())),
-            run_key(test_request({minimised, 20, {}, "", false}, d2())));
+  EXPECT_NE(dem::run_key(dem::test_request({more, 20, {}, "", false}, d2())),
+            dem::run_key(dem::test_request({minimised, 20, {}, "", false}, d2())));
   more = tiny();
   more.packing.seed = 5;
   EXPECT_NE(test_key(more, d2()), test_key(tiny(), d2()));
@@ -95,50 +95,50 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
 }
 
 TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
-  const RunStore store(folder_, "runs");
-  const Json record = ensure_preparation(store, tiny(), {}, {});
+  const dem::RunStore store(folder_, "runs");
+  const Json record = dem::ensure_preparation(store, tiny(), {}, {});
   const std::string key = record.at("key");
   EXPECT_EQ(record.at("states").size(), 1u);
-  const fs::path state = store.folder(key) / kept_file(Branch::unloading, 0.74);
+  const fs::path state = store.folder(key) / dem::kept_file(Branch::unloading, 0.74);
   EXPECT_NEAR(dem::volume_fraction(dem::read_state(state).packing), 0.74, 1e-15);
   EXPECT_TRUE(fs::exists(store.folder(key) / "loading.csv"));
 
   const auto written = fs::last_write_time(store.folder(key) / "run.json");
   const std::string bytes = content(state);
-  EXPECT_EQ(ensure_preparation(store, tiny(), {}, {}), record);
+  EXPECT_EQ(dem::ensure_preparation(store, tiny(), {}, {}), record);
   EXPECT_EQ(fs::last_write_time(store.folder(key) / "run.json"), written);
 
   std::string damaged = bytes;
   damaged[damaged.size() / 2] ^= 1;
   put("runs/" + key + "/" + state.filename().string(), damaged);
   EXPECT_FALSE(store.find(key));
-  ensure_preparation(store, tiny(), {}, {});
+  dem::ensure_preparation(store, tiny(), {}, {});
   EXPECT_EQ(content(state), bytes);  // the same bits again
 
   fs::remove(store.folder(key) / "run.json");  // as if killed before the end
   put("runs/" + key + "/leftover", "x");
   EXPECT_FALSE(store.find(key));
-  ensure_preparation(store, tiny(), {}, {});
+  dem::ensure_preparation(store, tiny(), {}, {});
   EXPECT_FALSE(fs::exists(store.folder(key) / "leftover"));
 }
 
 TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
-  const RunStore store(folder_, "runs");
-  ensure_preparation(store, tiny(), {}, {});
-  TestStart start{tiny(), 20, {}, "", false};
-  const Json record = ensure_test(store, start, d2(), {}, {});
+  const dem::RunStore store(folder_, "runs");
+  dem::ensure_preparation(store, tiny(), {}, {});
+  dem::TestStart start{tiny(), 20, {}, "", false};
+  const Json record = dem::ensure_test(store, start, d2(), {}, {});
   const fs::path series = store.folder(record.at("key")) / "series.csv";
-  const auto rows = read_series(series, d2(), packing_from_record(record));
+  const auto rows = read_series(series, d2(), dem::packing_from_record(record));
   EXPECT_EQ(rows.size(), 21u);
   EXPECT_NEAR(rows.back().eps_dev, 0.02, 1e-15);
-  EXPECT_GT(cost_from_record(record).steps, 0u);
-  EXPECT_EQ(packing_from_record(record).particles, 32);
-  EXPECT_GT(packing_from_record(record).mean_radius, 0.5e-3);
+  EXPECT_GT(dem::cost_from_record(record).steps, 0u);
+  EXPECT_EQ(dem::packing_from_record(record).particles, 32);
+  EXPECT_GT(dem::packing_from_record(record).mean_radius, 0.5e-3);
 
   const std::string bytes = content(series);
   fs::remove(store.folder(record.at("key")) / "run.json");
   start.preparation.engine.threads = 2;
-  ensure_test(store, start, d2(), {}, {});
+  dem::ensure_test(store, start, d2(), {}, {});
   EXPECT_EQ(content(series), bytes);
 }
 
@@ -171,24 +171,24 @@ std::map<std::string, std::string> results(const fs::path& run) {
 // as the uninterrupted one does. Damage to what it had yielded makes it start anew.
 TEST_F(Runs, GoOnFromTheirCheckpoints) {
   fs::create_directory(folder_ / "whole");
-  const RunStore whole(folder_ / "whole", "runs");
-  const std::string key = ensure_preparation(whole, tiny(), {}, {}).at("key");
+  const dem::RunStore whole(folder_ / "whole", "runs");
+  const std::string key = dem::ensure_preparation(whole, tiny(), {}, {}).at("key");
   const auto expected = results(whole.folder(key));
   ASSERT_EQ(expected.size(), 3u);
 
-  const RunStore store(folder_, "runs");
+  const dem::RunStore store(folder_, "runs");
   const fs::path run = store.folder(key);
   std::vector<std::string> log;
-  ResumePolicy policy{true, 0, [&](const std::string& text) { log.push_back(text); }};
+  dem::ResumePolicy policy{true, 0, [&](const std::string& text) { log.push_back(text); }};
   const auto interrupt_twice = [&] {
     for (int i = 0; i < 2; ++i) {
       Interruption interruption("loading");
       policy.checkpoint_interval = 0;
-      EXPECT_THROW(ensure_preparation(store, tiny(), policy, interruption.control()), Interrupted);
+      EXPECT_THROW(dem::ensure_preparation(store, tiny(), policy, interruption.control()), Interrupted);
     }
     policy.checkpoint_interval = 60;
-    ASSERT_TRUE(fs::exists(run / kCheckpoint));
-    ASSERT_TRUE(fs::exists(run / kPreviousCheckpoint));
+    ASSERT_TRUE(fs::exists(run / dem::kCheckpoint));
+    ASSERT_TRUE(fs::exists(run / dem::kPreviousCheckpoint));
     log.clear();
   };
   const auto damage = [&](const std::string& name) {
@@ -198,67 +198,67 @@ TEST_F(Runs, GoOnFromTheirCheckpoints) {
   };
 
   interrupt_twice();
-  EXPECT_EQ(ensure_preparation(store, tiny(), policy, {}).at("warnings"), whole.find(key)->at("warnings"));
+  EXPECT_EQ(dem::ensure_preparation(store, tiny(), policy, {}).at("warnings"), whole.find(key)->at("warnings"));
   EXPECT_EQ(results(run), expected);
   ASSERT_EQ(log.size(), 1u);
   EXPECT_TRUE(log[0].starts_with("goes on from the checkpoint at step")) << log[0];
 
   fs::remove(run / "run.json");
   interrupt_twice();
-  damage(kCheckpoint);
-  ensure_preparation(store, tiny(), policy, {});
+  damage(dem::kCheckpoint);
+  dem::ensure_preparation(store, tiny(), policy, {});
   EXPECT_EQ(results(run), expected);
   ASSERT_EQ(log.size(), 2u);
   EXPECT_NE(log[0].find("its checksum does not fit"), std::string::npos) << log[0];
 
   fs::remove(run / "run.json");
   interrupt_twice();
-  damage(kCheckpoint);
-  damage(kPreviousCheckpoint);
-  ensure_preparation(store, tiny(), policy, {});
+  damage(dem::kCheckpoint);
+  damage(dem::kPreviousCheckpoint);
+  dem::ensure_preparation(store, tiny(), policy, {});
   EXPECT_EQ(results(run), expected);
   EXPECT_EQ(log.size(), 2u) << "two damaged files, nothing to go on from";
 
   fs::remove(run / "run.json");
   interrupt_twice();
-  put("runs/" + key + "/" + kProgress, R"({"states": [], "warnings": [], "files": {"loading.csv": "0"}})");
-  ensure_preparation(store, tiny(), policy, {});
+  put("runs/" + key + "/" + dem::kProgress, R"({"states": [], "warnings": [], "files": {"loading.csv": "0"}})");
+  dem::ensure_preparation(store, tiny(), policy, {});
   EXPECT_EQ(results(run), expected);
   EXPECT_NE(log.back().find("starts anew"), std::string::npos);
 
   fs::remove(run / "run.json");
   interrupt_twice();
   policy.resume = false;
-  ensure_preparation(store, tiny(), policy, {});
+  dem::ensure_preparation(store, tiny(), policy, {});
   EXPECT_EQ(results(run), expected);
   EXPECT_TRUE(log.empty());
 }
 
 TEST_F(Runs, DoNotTakeTheCheckpointOfAnother) {
-  const RunStore store(folder_, "runs");
-  ensure_preparation(store, tiny(), {}, {});
-  const TestStart start{tiny(), 20, {}, "", false};
+  const dem::RunStore store(folder_, "runs");
+  dem::ensure_preparation(store, tiny(), {}, {});
+  const dem::TestStart start{tiny(), 20, {}, "", false};
   const auto interrupted = [&](const Path& path) {
     Interruption interruption("element test");
-    EXPECT_THROW(ensure_test(store, start, path, {true, 0, {}}, interruption.control()), Interrupted);
-    return store.folder(run_key(test_request(start, path))) / kCheckpoint;
+    EXPECT_THROW(dem::ensure_test(store, start, path, {true, 0, {}}, interruption.control()), Interrupted);
+    return store.folder(dem::run_key(dem::test_request(start, path))) / dem::kCheckpoint;
   };
   Path longer = d2();
   longer.segments[0].extent = 0.03;
   fs::copy_file(interrupted(longer), interrupted(d2()), fs::copy_options::overwrite_existing);
   std::vector<std::string> log;
-  ensure_test(store, start, d2(), {true, 0, [&](const std::string& text) { log.push_back(text); }}, {});
+  dem::ensure_test(store, start, d2(), {true, 0, [&](const std::string& text) { log.push_back(text); }}, {});
   ASSERT_FALSE(log.empty());
   EXPECT_NE(log[0].find("is of another run"), std::string::npos) << log[0];
 }
 
 TEST_F(Runs, StoreBelongsToOneProcess) {
-  const RunStore store(folder_, "runs");
-  EXPECT_THROW(RunStore(folder_, "runs"), Error);
+  const dem::RunStore store(folder_, "runs");
+  EXPECT_THROW(dem::RunStore(folder_, "runs"), Error);
 }
 
-Spec tiny_spec() {
-  Spec spec = spec_from_json(
+dem::Spec tiny_spec() {
+  dem::Spec spec = dem::spec_from_json(
       parse_json(
           R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70, "keep": [0.76],
       "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "strain": 0.02, "role": "calibration"}, {"mode": "UNI", "strain": 0.01, "role": "validation"}]})",
@@ -268,15 +268,15 @@ Spec tiny_spec() {
 }
 
 TEST_F(Runs, BecomeADataSet) {
-  const Spec spec = tiny_spec();
+  const dem::Spec spec = tiny_spec();
   const auto planned = plan(spec);
   ASSERT_EQ(planned.size(), 6u);  // 3 tests on 2 packings
   ProgressPrinter quiet(stderr, true);
   Session session{"test", 2, false, {}, quiet, {}};
-  const RunStore store(folder_, "runs");
+  const dem::RunStore store(folder_, "runs");
   fs::create_directory(folder_ / "dataset");
-  RunCounts counts;
-  const Dataset first = run_planned(planned, Json(spec_to_json(spec)), folder_ / "dataset", store, session, counts);
+  dem::RunCounts counts;
+  const Dataset first = dem::run_planned(planned, Json(dem::spec_to_json(spec)), folder_ / "dataset", store, session, counts);
   EXPECT_EQ(counts.runs, 6u);  // 2 preparations, 4 tests; ISO costs nothing
   EXPECT_EQ(counts.found, 0u);
   EXPECT_EQ(first.tests[0].record.name, "ISO-unloading-s1");
@@ -289,12 +289,12 @@ TEST_F(Runs, BecomeADataSet) {
 
   // the same in another order of scheduling, then fewer tests: stale series go
   session.threads = 1;
-  RunCounts again;
-  const Dataset second = run_planned(planned, Json(spec_to_json(spec)), folder_ / "dataset", store, session, again);
+  dem::RunCounts again;
+  const Dataset second = dem::run_planned(planned, Json(dem::spec_to_json(spec)), folder_ / "dataset", store, session, again);
   EXPECT_EQ(again.found, 6u);
   EXPECT_EQ(second.digest, first.digest);
-  RunCounts fewer;
-  run_planned({planned[0], planned[1]}, Json(spec_to_json(spec)), folder_ / "dataset", store, session, fewer);
+  dem::RunCounts fewer;
+  dem::run_planned({planned[0], planned[1]}, Json(dem::spec_to_json(spec)), folder_ / "dataset", store, session, fewer);
   EXPECT_FALSE(fs::exists(folder_ / "dataset" / "D2-0.74-s2.csv"));
   EXPECT_EQ(read_dataset(folder_ / "dataset").tests.size(), 2u);
 }
@@ -302,7 +302,7 @@ TEST_F(Runs, BecomeADataSet) {
 TEST_F(Runs, ProbesAreKeptBesideTheSeries) {
   const auto with_probes = [](const std::string& probes) {
     const std::string name = "s.json";
-    return spec_from_json(
+    return dem::spec_from_json(
         parse_json(
             R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70, "seeds": [1],
       "tests": [{"mode": "D2", "strain": 0.02, "role": "calibration")" +
@@ -310,26 +310,26 @@ TEST_F(Runs, ProbesAreKeptBesideTheSeries) {
             name, JsonSource::user),
         name);
   };
-  const Spec spec = with_probes(R"(, "probes": {"every": 0.01})");
+  const dem::Spec spec = with_probes(R"(, "probes": {"every": 0.01})");
   ProgressPrinter quiet(stderr, true);
   Session session{"test", 1, false, {}, quiet, {}};
-  const RunStore store(folder_, "runs");
+  const dem::RunStore store(folder_, "runs");
   const fs::path folder = folder_ / "dataset", probes = folder / kProbesFolder / "D2-0.74-s1.csv";
   fs::create_directory(folder);
-  RunCounts counts;
-  const Dataset made = run_planned(plan(spec), Json(spec_to_json(spec)), folder, store, session, counts);
+  dem::RunCounts counts;
+  const Dataset made = dem::run_planned(plan(spec), Json(dem::spec_to_json(spec)), folder, store, session, counts);
   EXPECT_EQ(made.tests[0].probes_sha256, sha256_of_file(probes));
   const Dataset read = read_dataset(folder);
   EXPECT_EQ(read.tests[0].probes_sha256, made.tests[0].probes_sha256);
-  EXPECT_EQ(spec_to_json(spec_from_json(read.spec, "d.json")), spec_to_json(spec));
+  EXPECT_EQ(dem::spec_to_json(dem::spec_from_json(read.spec, "d.json")), dem::spec_to_json(spec));
 
   const std::string bytes = content(probes);
   std::ofstream(probes, std::ios::binary) << bytes << "1";
   EXPECT_NE(refusal([&] { read_dataset(folder); }).find("probes/D2-0.74-s1.csv: is not the file"), std::string::npos);
 
   // without probes: another run, the same series, and no stale probes
-  const Spec plain = with_probes("");
-  const Dataset without = run_planned(plan(plain), Json(spec_to_json(plain)), folder, store, session, counts);
+  const dem::Spec plain = with_probes("");
+  const Dataset without = dem::run_planned(plan(plain), Json(dem::spec_to_json(plain)), folder, store, session, counts);
   EXPECT_NE(without.tests[0].run, made.tests[0].run);
   EXPECT_EQ(without.tests[0].sha256, made.tests[0].sha256);
   EXPECT_NE(without.digest, made.digest);
@@ -337,17 +337,17 @@ TEST_F(Runs, ProbesAreKeptBesideTheSeries) {
 }
 
 TEST_F(Runs, OfPredictionsUseNewPackings) {
-  const Spec spec = tiny_spec();
+  const dem::Spec spec = tiny_spec();
   PathFile path{d2(0.75), {}, {}};
-  EXPECT_EQ(new_seeds(spec, path, {}, "p.json"), (std::vector<std::uint64_t>{3, 4}));
+  EXPECT_EQ(dem::new_seeds(spec, path, {}, "p.json"), (std::vector<std::uint64_t>{3, 4}));
   path.seeds = {11};
-  EXPECT_EQ(new_seeds(spec, path, {}, "p.json"), std::vector<std::uint64_t>{11});
-  EXPECT_EQ(new_seeds(spec, path, {12, 13}, "p.json"), (std::vector<std::uint64_t>{12, 13}));
+  EXPECT_EQ(dem::new_seeds(spec, path, {}, "p.json"), std::vector<std::uint64_t>{11});
+  EXPECT_EQ(dem::new_seeds(spec, path, {12, 13}, "p.json"), (std::vector<std::uint64_t>{12, 13}));
   EXPECT_NE(refusal([&] {
-              new_seeds(spec, path, {5, 2}, "p.json");
+              dem::new_seeds(spec, path, {5, 2}, "p.json");
             }).find("p.json: seeds: 2 was used for the calibration"),
             std::string::npos);
-  EXPECT_NE(refusal([&] { new_seeds(spec, path, {5, 5}, "p.json"); }).find("given twice"), std::string::npos);
+  EXPECT_NE(refusal([&] { dem::new_seeds(spec, path, {5, 5}, "p.json"); }).find("given twice"), std::string::npos);
 
   const auto tests = plan(spec, path, {11, 12}, "p.json");
   ASSERT_EQ(tests.size(), 2u);
@@ -359,7 +359,7 @@ TEST_F(Runs, OfPredictionsUseNewPackings) {
   EXPECT_EQ(a[0].preparation.keep_unloading, std::vector<double>{0.76});
   const auto denser = plan(spec, {d2(0.76), {}, 50}, {11}, "p.json");  // other rows, the same packing
   EXPECT_EQ(denser[0].rows, 50);
-  EXPECT_EQ(run_key(preparation_request(denser[0].preparation)), run_key(preparation_request(a[0].preparation)));
+  EXPECT_EQ(dem::run_key(dem::preparation_request(denser[0].preparation)), dem::run_key(dem::preparation_request(a[0].preparation)));
   EXPECT_NE(refusal([&] {
               plan(spec, {d2(0.69), {}, {}}, {11}, "p.json");
             }).find("0.69 is not on the unloading branch"),

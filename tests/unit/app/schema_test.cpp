@@ -1,4 +1,4 @@
-#include "app/files/schema.hpp"
+#include "model/files/schema.hpp"
 
 #include <functional>
 

@@ -1,11 +1,11 @@
-#include "app/files/prediction_series.hpp"
-#include "app/files/series_csv.hpp"
+#include "predict/prediction_series.hpp"
+#include "model/files/series_csv.hpp"
 
 #include <cmath>
 #include <cstring>
 #include <set>
 
-#include "app/files/series_columns.hpp"
+#include "model/files/series_columns.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -154,8 +154,8 @@ TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
   const auto start = predict::state_from_law(testing::synthetic_truth(), record_.path.nu);
   const auto prediction = predict::predict(Rung::evolution, testing::synthetic_truth(), Coupling::energy, segments,
                                            start, predict::uniform_points(segments, 10), {}, {}, {});
-  write_prediction_series(folder_ / "p.csv", prediction.rows);
-  const auto rows = read_prediction_series(folder_ / "p.csv");
+  predict::write_prediction_series(folder_ / "p.csv", prediction.rows);
+  const auto rows = predict::read_prediction_series(folder_ / "p.csv");
   ASSERT_EQ(rows.size(), prediction.rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_TRUE(same_bits(rows[i].state.P, prediction.rows[i].state.P));
@@ -165,7 +165,7 @@ TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
     EXPECT_LT((rows[i].state.F - prediction.rows[i].state.F).norm(), 1e-15);
   }
   EXPECT_NE(
-      refusal([&] { read_prediction_series(put("q.csv", "segment\n0\n")); }).find("misses the column 'strain_xx'"),
+      refusal([&] { predict::read_prediction_series(put("q.csv", "segment\n0\n")); }).find("misses the column 'strain_xx'"),
       std::string::npos);
 }
 

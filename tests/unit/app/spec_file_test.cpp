@@ -1,8 +1,8 @@
-#include "app/files/spec_file.hpp"
+#include "dem/runs/spec_file.hpp"
 
 #include <cmath>
 
-#include "app/files/preparation_json.hpp"
+#include "dem/runs/preparation_json.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {
@@ -10,33 +10,33 @@ namespace {
 
 using testing::refusal;
 
-Spec spec(const std::string& text) { return spec_from_json(parse_json(text, "s.json", JsonSource::user), "s.json"); }
+dem::Spec spec(const std::string& text) { return dem::spec_from_json(parse_json(text, "s.json", JsonSource::user), "s.json"); }
 std::string spec_refusal(const std::string& text) {
   return refusal([&] { spec(text); });
 }
 
 TEST(SpecFile, FillsInTheDocumentedDefaults) {
-  const Spec s = spec("{}");
+  const dem::Spec s = spec("{}");
   EXPECT_EQ(s.seeds, (std::vector<std::uint64_t>{1, 2}));
   ASSERT_EQ(s.tests.size(), 3u);
   EXPECT_EQ(s.tests[0].mode, "ISO");
   EXPECT_EQ(s.tests[1].mode, "D2");
   EXPECT_EQ(s.tests[2].mode, "D2-ISO");
-  for (const TestRequest& test : s.tests) EXPECT_EQ(test.role, Role::calibration);
+  for (const dem::TestRequest& test : s.tests) EXPECT_EQ(test.role, Role::calibration);
   EXPECT_EQ(s.tests[1].densities, s.densities);
   EXPECT_EQ(s.preparation.keep_unloading, s.densities);
   EXPECT_TRUE(s.preparation.keep_loading.empty());
 }
 
 TEST(SpecFile, TestsMayAskForProbes) {
-  const Spec s = spec(R"({"tests": [{"mode": "D2", "role": "calibration", "probes": {"every": 0.05}},
+  const dem::Spec s = spec(R"({"tests": [{"mode": "D2", "role": "calibration", "probes": {"every": 0.05}},
     {"mode": "D3", "role": "validation", "probes": {"every": 0.1, "step": [1e-7, 1e-5]}}, {"mode": "UNI", "role": "validation"}]})");
   EXPECT_EQ(s.tests[0].probes->every, 0.05);
   EXPECT_EQ(s.tests[0].probes->steps, std::vector<double>{1e-6});
   EXPECT_EQ(s.tests[1].probes->steps, (std::vector<double>{1e-7, 1e-5}));
   EXPECT_FALSE(s.tests[2].probes);
-  EXPECT_EQ(spec_to_json(spec(spec_to_json(s).dump())), spec_to_json(s));
-  EXPECT_FALSE(spec_to_json(s)["tests"][2].contains("probes"));
+  EXPECT_EQ(dem::spec_to_json(spec(dem::spec_to_json(s).dump())), dem::spec_to_json(s));
+  EXPECT_FALSE(dem::spec_to_json(s)["tests"][2].contains("probes"));
 
   const auto probes = [](const std::string& object) {
     return spec_refusal(R"({"tests": [{"mode": "D2", "role": "calibration", "probes": )" + object + "}]}");
@@ -51,7 +51,7 @@ TEST(SpecFile, TestsMayAskForProbes) {
 }
 
 TEST(SpecFile, ReadsEveryKey) {
-  const Spec s = spec(
+  const dem::Spec s = spec(
       R"({"particles": 64, "seeds": [5], "size_width": 2, "mean_radius": 2e-3, "density": 1000, "stiffness": 1e7, "contact_viscosity": 0.5,
     "background_viscosity": 0.2, "time_step_fraction": 0.05, "skin": 0.2, "strain_rate": 50, "quasi_static_step": 0.002, "driving": "constant", "transport": "wall", "rows": 50,
     "nu_start": 0.65, "nu_max": 0.81, "nu_end": 0.66, "densities": [0.75, 0.7], "keep": [0.72], "coupling": "single", "tests": [{"mode": "D3", "role": "validation"}]})");
@@ -87,21 +87,21 @@ TEST(SpecFile, ResolvedFormReadsBackTheSame) {
        R"({"densities": [0.71], "tests": [{"mode": "ISO", "branch": "loading", "role": "validation"}, {"mode": "UNI", "density": [0.7, 0.695], "role": "validation"},
         {"segments": [{"mode": "D2", "axes": "yzx", "reverse": true, "extent": {"eps_dev": 0.1}}, {"rate_tensor": [[1,0,0],[0,1,0],[0,0,-2]], "extent": {"eps_dev": 0.2}}],
          "density": 0.7, "branch": "loading", "role": "calibration"}, {"mode": "ISO", "role": "calibration"}]})"}) {
-    const Spec first = spec(text);
-    const std::string resolved = json_text(spec_to_json(first));
-    const Spec second = spec_from_json(parse_json(resolved, "r.json", JsonSource::own), "r.json");
-    EXPECT_EQ(json_text(spec_to_json(second)), resolved);
-    EXPECT_EQ(spec_to_json(second), spec_to_json(spec(resolved)));
+    const dem::Spec first = spec(text);
+    const std::string resolved = json_text(dem::spec_to_json(first));
+    const dem::Spec second = dem::spec_from_json(parse_json(resolved, "r.json", JsonSource::own), "r.json");
+    EXPECT_EQ(json_text(dem::spec_to_json(second)), resolved);
+    EXPECT_EQ(dem::spec_to_json(second), dem::spec_to_json(spec(resolved)));
   }
 }
 
 TEST(SpecFile, TestsBecomePathsAndNames) {
-  const Spec s = spec("{}");
+  const dem::Spec s = spec("{}");
   const auto path = [&](const char* mode, double strain) {
-    TestRequest test;
+    dem::TestRequest test;
     test.mode = mode;
     test.strain = strain;
-    return path_of(test, 0.7, s);
+    return dem::path_of(test, 0.7, s);
   };
   // equations.md 0: D2-ISO shears to 0.15, then goes to nu + 0.03 and back
   const auto d2_iso = resolve(path("D2-ISO", s.tests[2].strain));
@@ -113,10 +113,10 @@ TEST(SpecFile, TestsBecomePathsAndNames) {
   EXPECT_NEAR(resolve(path("UNI", 0.1))[0].eps_dev_rate() * resolve(path("UNI", 0.1))[0].length, 0.1, 1e-15);
   EXPECT_EQ(path("D3", 0.2).segments[0].mode, Mode::D3);
 
-  EXPECT_EQ(record_name(s.tests[0], 0, 7), "ISO-unloading-s7");
-  EXPECT_EQ(record_name(s.tests[1], 0.7, 7), "D2-0.70-s7");
-  EXPECT_EQ(density_text(0.695), "0.695");
-  EXPECT_EQ(density_text(0.8), "0.80");
+  EXPECT_EQ(dem::record_name(s.tests[0], 0, 7), "ISO-unloading-s7");
+  EXPECT_EQ(dem::record_name(s.tests[1], 0.7, 7), "D2-0.70-s7");
+  EXPECT_EQ(dem::density_text(0.695), "0.695");
+  EXPECT_EQ(dem::density_text(0.8), "0.80");
 }
 
 TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
@@ -158,13 +158,13 @@ TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
 }
 
 TEST(SpecFile, StepsOfAPreparationFollowFromRatesAndTheShortestCollision) {
-  Spec s = spec(
+  dem::Spec s = spec(
       R"({"driving": "constant", "strain_rate": 100, "nu_start": 0.64, "nu_max": 0.8, "nu_end": 0.7, "densities": [0.75]})");
   const dem::Material& m = s.preparation.packing.material;
   // constant rate: eps_vol/rate for each branch, the gas compression gas_compression_factor times faster
   const double dt = 0.1 * dem::collision_time(m, dem::sphere_mass(m, 0.5e-3) / 2);
   const double seconds = (std::log(0.64 / 0.3) / 10 + std::log(0.8 / 0.64) + std::log(0.8 / 0.7)) / 100;
-  EXPECT_NEAR(expected_steps(s.preparation), seconds / dt, 3);
+  EXPECT_NEAR(dem::expected_steps(s.preparation), seconds / dt, 3);
 }
 
 }  // namespace

@@ -5,38 +5,38 @@
 #include <set>
 #include <tuple>
 
-#include "app/files/schema.hpp"
+#include "model/files/schema.hpp"
 #include "app/report/svg_figure.hpp"
 #include "app/report/svg_file.hpp"
-#include "app/study/figure_study.hpp"
-#include "app/study/study_json.hpp"
-#include "app/study/study_table.hpp"
+#include "app/report/figure_study.hpp"
+#include "chain/studies/study_json.hpp"
+#include "app/commands/study_table.hpp"
 #include "model/student.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-SettingOutcome outcome(const std::string& name, double cost, double value) {
+chain::SettingOutcome outcome(const std::string& name, double cost, double value) {
   const Eigen::MatrixXd psi = Eigen::MatrixXd::Constant(1, 3, 0.005);
-  const StudyQuantity s_par{"s_par", Eigen::VectorXd::Constant(1, value), psi, true};
+  const chain::StudyQuantity s_par{"s_par", Eigen::VectorXd::Constant(1, value), psi, true};
   return {name, {{"rows", 20}}, {cost, 1, 2}, {1, 2, 3}, {s_par}, {}, 0.001, "memory", "a note"};
 }
 
-SettingsStudy study(double cheap) {
-  return study_of("chain", "in words", Packings::chosen, {{"rows", 40}},
+chain::SettingsStudy study(double cheap) {
+  return chain::study_of("chain", "in words", chain::Packings::chosen, {{"rows", 40}},
                   {outcome("base", 1e9, 1), outcome("cheap", 5e8, cheap), outcome("dear", 2e9, 1.2)}, 0);
 }
 
 TEST(StudyFiles, FollowTheSchema) {
-  OrderedJson document = study_to_json(study(1.1));
+  OrderedJson document = chain::study_to_json(study(1.1));
   document["provenance"] = OrderedJson::object();
   EXPECT_NO_THROW(check_schema(Json(document), Schema::study_settings, "study.json"));
   EXPECT_EQ(document["default"]["setting"], "base");
   EXPECT_EQ(document["default"]["dominated"], false);
   using Names = std::vector<std::string>;
   EXPECT_EQ(document["settings"][2]["dominated_by"].get<Names>(), (Names{"base", "cheap"}));
-  EXPECT_EQ(study_to_json(study(1))["default"]["dominated_by"].get<Names>(), Names{"cheap"});
+  EXPECT_EQ(chain::study_to_json(study(1))["default"]["dominated_by"].get<Names>(), Names{"cheap"});
   EXPECT_TRUE(document["settings"][2]["perhaps_dominated_by"].empty());
   EXPECT_TRUE(document["settings"][2]["reached_standard_error"].is_number());
   document["settings"][0].erase("sampling");
@@ -46,16 +46,16 @@ TEST(StudyFiles, FollowTheSchema) {
 TEST(StudyFiles, TheTableSaysWhetherTheDefaultIsDominated) {
   EXPECT_NE(study_table(study(1.1)).find("base is not dominated\n"), std::string::npos);
   EXPECT_NE(study_table(study(1)).find("base is dominated by cheap\n"), std::string::npos);
-  SettingsStudy toss = study(1);
+  chain::SettingsStudy toss = study(1);
   std::swap(toss.results[0].dominated_by, toss.results[0].perhaps_dominated_by);
   EXPECT_NE(study_table(toss).find("base may be dominated: cheaper and as good or better, within chance: cheap\n"),
             std::string::npos)
       << "what chance leaves open is not called undominated";
-  SettingsStudy bold = study(1.1);
+  chain::SettingsStudy bold = study(1.1);
   EXPECT_EQ(study_table(bold).find("near the energy balance's stop"), std::string::npos);
   bold.results[1].outcome.energy_residual = 0.009;
   EXPECT_NE(study_table(bold).find("near the energy balance's stop"), std::string::npos);
-  SettingsStudy nothing = study(1);
+  chain::SettingsStudy nothing = study(1);
   nothing.results[0].reached = std::nan("");
   EXPECT_NE(study_table(nothing).find("base shows nothing to be judged by\n"), std::string::npos);
 }
@@ -75,7 +75,7 @@ TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
   EXPECT_EQ(series(free, "dear").colour, Colour::grey);
   EXPECT_NE(series(free, "cheap").colour, Colour::grey);
   EXPECT_NE(series(free, "cheap").marker, Marker::star);
-  SettingsStudy bold = study(1.1);
+  chain::SettingsStudy bold = study(1.1);
   bold.results[1].outcome.energy_residual = 0.009;
   EXPECT_EQ(series(figure_of(bold).panels.front(), "cheap").colour, Colour::grey);
   // the shade ends where the sampling does
@@ -88,9 +88,9 @@ TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
 
 TEST(StudyFiles, NoTwoSettingsOfTheFigureLookAlike) {
   using namespace report;
-  std::vector<SettingOutcome> outcomes{outcome("base", 1e9, 1)};
+  std::vector<chain::SettingOutcome> outcomes{outcome("base", 1e9, 1)};
   for (int i = 0; i < 15; ++i) outcomes.push_back(outcome("cheap " + std::to_string(i), 5e8, 1.1));
-  const Panel panel = figure_of(study_of("chain", "in words", Packings::chosen, {}, outcomes, 0)).panels.front();
+  const Panel panel = figure_of(chain::study_of("chain", "in words", chain::Packings::chosen, {}, outcomes, 0)).panels.front();
   std::set<std::tuple<Marker, Colour, bool>> looks;
   for (const Series& s : panel.series) {
     if (s.marker != Marker::none) looks.insert({s.marker, s.colour, s.open_marker && s.marker != Marker::plus});

@@ -1,0 +1,61 @@
+#include "app/commands/study_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/files/one_line.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+constexpr std::size_t kNote = 120;  // characters; study.json has them all
+
+std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.2f}%", 100 * share) : "-"; }
+
+std::string line_of(const chain::SettingResult& r, chain::Packings packings, std::size_t width) {
+  const chain::SettingOutcome& o = r.outcome;
+  const auto error = [packings](double x) {
+    return packings == chain::Packings::chosen || !std::isfinite(x) ? percent(x) : fmt::format("{:.2f}", x);
+  };
+  std::string text = fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}", o.name,
+                                 width, o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds,
+                                 error(r.error), error(r.floor), error(r.sampling), error(r.reached),
+                                 error(r.reached_error), percent(o.energy_residual));
+  if (chain::near_the_stop(o.energy_residual)) text += "  near the energy balance's stop";
+  if (!r.dominated_by.empty()) text += "  dominated";
+  if (!o.model.empty()) text += "  " + o.model;
+  if (!o.note.empty()) text += "  " + one_line(o.note, kNote);
+  return text + "\n";
+}
+
+std::string verdict_of(const chain::SettingResult& judged) {
+  if (!std::isfinite(judged.reached)) return fmt::format("{} shows nothing to be judged by\n", judged.outcome.name);
+  const std::string by = fmt::format("{}", fmt::join(judged.dominated_by, ", ")),
+                    perhaps = fmt::format("{}", fmt::join(judged.perhaps_dominated_by, ", "));
+  std::string text = judged.outcome.name;
+  if (!by.empty())
+    text += " is dominated by " + by + (perhaps.empty() ? "" : "; perhaps by " + perhaps);
+  else if (!perhaps.empty())
+    text += " may be dominated: cheaper and as good or better, within chance: " + perhaps;
+  else
+    text += " is not dominated";
+  text += "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string study_table(const chain::SettingsStudy& study) {
+  std::size_t width = 7;
+  for (const chain::SettingResult& r : study.results) width = std::max(width, r.outcome.name.size());
+  std::string text =
+      fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
+                  "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached", "+-", "energy");
+  for (const chain::SettingResult& r : study.results) text += line_of(r, study.packings, width);
+  if (study.packings == chain::Packings::given) text += "errors in units of the packings' chance\n";
+  return text + verdict_of(study.results.at(study.judged));
+}
+
+}  // namespace grainlaw::app

@@ -1,0 +1,100 @@
+#include "app/report/figure_study.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace grainlaw::app::report {
+namespace {
+
+constexpr std::array kMarkers{Marker::circle, Marker::square, Marker::triangle, Marker::diamond, Marker::plus};
+constexpr std::array kColours{Colour::blue, Colour::green, Colour::purple, Colour::orange, Colour::sky};
+
+/// `number`: of the setting. Neighbours differ in symbol and colour; the sixth to tenth are outlines, and each five have their
+/// symbols in the colours of their neighbours before.
+Series point_of(const chain::SettingResult& r, std::size_t number) {
+  Series series;
+  series.label = plain(r.outcome.name);
+  series.x = {r.outcome.cost.particle_steps};
+  series.y = {r.reached};
+  series.y_error = {r.reached_error};
+  series.marker = kMarkers[number % kMarkers.size()];
+  series.open_marker = number / kMarkers.size() % 2 == 1;
+  series.marker_size = 4;
+  series.colour = r.dominated_by.empty() && !chain::near_the_stop(r.outcome.energy_residual)
+                      ? kColours[(number + number / kMarkers.size()) % kColours.size()]
+                      : Colour::grey;
+  return series;
+}
+
+/// The edge of what sampling makes, and the shade below it down to `bottom`.
+std::array<Series, 2> floor_of(const std::vector<const chain::SettingResult*>& by_cost, chain::Packings packings, double bottom) {
+  Series edge, shade;
+  edge.label = plain(packings == chain::Packings::given ? "floor: chance of the packings that all settings share"
+                                                 : "floor: sampling, by the setting's own packings");
+  edge.line = Line::dotted;
+  shade.bands.emplace_back();
+  for (const chain::SettingResult* r : by_cost) {
+    const double noise = r->noise;
+    if (!(noise > 0)) continue;
+    edge.x.push_back(r->outcome.cost.particle_steps);
+    edge.y.push_back(noise);
+    shade.x.push_back(r->outcome.cost.particle_steps);
+    shade.y.push_back((noise + bottom) / 2);
+    shade.bands.front().push_back((noise - bottom) / 2);
+  }
+  return {shade, edge};
+}
+
+/// The decade strictly below the least error or floor.
+double bottom_of(const std::vector<const chain::SettingResult*>& results) {
+  double least = 1;
+  for (const chain::SettingResult* r : results) {
+    for (const double value : {r->reached, r->noise}) {
+      if (value > 0) least = std::min(least, value);
+    }
+  }
+  return std::pow(10.0, std::ceil(std::log10(least)) - 1);
+}
+
+}  // namespace
+
+Figure figure_of(const chain::SettingsStudy& study) {
+  Figure figure;
+  figure.id = "settings";
+  figure.title = "Error of settings against their cost";
+  figure.description =
+      "Error reached over particle-steps. " + study.error +
+      ". Bars: one standard error by the packings. Shaded: what sampling alone makes; star: the "
+      "default; grey: dominated by a setting that costs no more and is better beyond chance, or so near the "
+      "energy balance's stop that other "
+      "data sets would not be finished";
+  figure.panel_height = 380;
+  std::vector<const chain::SettingResult*> by_cost;
+  for (std::size_t i = study.judged; i < study.results.size(); ++i) by_cost.push_back(&study.results[i]);
+  std::stable_sort(by_cost.begin(), by_cost.end(), [](const auto* a, const auto* b) {
+    return a->outcome.cost.particle_steps < b->outcome.cost.particle_steps;
+  });
+  Panel panel;
+  panel.x.label = plain("particle-steps");
+  panel.y.label = plain(study.packings == chain::Packings::given ? "error reached, in units of the packings' chance [–]"
+                                                          : "relative error reached [–]");
+  panel.x.logarithmic = panel.y.logarithmic = true;
+  const double bottom = bottom_of(by_cost);
+  panel.y.from = bottom;
+  for (const Series& series : floor_of(by_cost, study.packings, bottom)) panel.series.push_back(series);
+  for (std::size_t i = study.judged + 1; i < study.results.size(); ++i) {
+    if (std::isfinite(study.results[i].reached))
+      panel.series.push_back(point_of(study.results[i], i - study.judged - 1));
+  }
+  Series star = point_of(study.results[study.judged], 0);
+  star.marker = Marker::star;
+  star.open_marker = false;
+  star.marker_size = 7;
+  if (star.colour != Colour::grey) star.colour = Colour::vermillion;
+  panel.series.push_back(star);
+  figure.panels.push_back(panel);
+  return figure;
+}
+
+}  // namespace grainlaw::app::report

@@ -1,0 +1,70 @@
+#include "app/terminal/interrupt.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <thread>
+
+#include "app/exit_code.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+// A handler may only touch these: a lock-free flag and a descriptor.
+std::atomic<int> signals_seen{0};
+std::atomic<int> pipe_in{-1};
+
+extern "C" void on_signal(int) {
+  const int saved = errno;
+  if (signals_seen.fetch_add(1) > 0) _exit(static_cast<int>(ExitCode::interrupted));
+  const char signalled = 's';
+  while (write(pipe_in, &signalled, 1) < 0 && errno == EINTR) {
+  }
+  errno = saved;
+}
+
+}  // namespace
+
+struct InterruptGuard::Watch {
+  std::stop_source source;
+  int ends[2]{-1, -1};
+  struct sigaction earlier_int {
+  }, earlier_term{};
+  std::jthread thread;
+};
+
+InterruptGuard::InterruptGuard() : watch_(new Watch) {
+  if (pipe2(watch_->ends, O_CLOEXEC) != 0) throw Error("signals: no pipe could be opened");
+  signals_seen = 0;
+  pipe_in = watch_->ends[1];
+  // stop callbacks are no business of a signal handler: a thread requests the stop
+  watch_->thread = std::jthread([watch = watch_.get()] {
+    char message = 0;
+    while (read(watch->ends[0], &message, 1) < 0 && errno == EINTR) {
+    }
+    if (message == 's') watch->source.request_stop();
+  });
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, &watch_->earlier_int);
+  sigaction(SIGTERM, &action, &watch_->earlier_term);
+}
+
+InterruptGuard::~InterruptGuard() {
+  sigaction(SIGINT, &watch_->earlier_int, nullptr);
+  sigaction(SIGTERM, &watch_->earlier_term, nullptr);
+  pipe_in = -1;
+  close(watch_->ends[1]);  // ends the thread's read, whatever happens to system calls
+  watch_->thread.join();
+  close(watch_->ends[0]);
+}
+
+std::stop_token InterruptGuard::token() const { return watch_->source.get_token(); }
+
+}  // namespace grainlaw::app

@@ -1,0 +1,152 @@
+#include "dem/runs/preparation_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dem/element_tests/quasi_static_test.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+constexpr double kPassesPerMinimum = 300;  // force passes of one minimisation along a quasi-static path, measured within a factor of 3
+constexpr double kUnloadTo = 0.66;  // just below jamming, so that the unloading branch brackets nu_c
+
+/// The lightest sphere of the distribution, uniform on 2<r>/(w+1) [1, w].
+double smallest_radius(const PackingOptions& packing) {
+  return 2 * packing.mean_radius / (packing.size_width + 1);
+}
+
+double shortest_collision(const PackingOptions& packing) {
+  return collision_time(packing.material, sphere_mass(packing.material, smallest_radius(packing)) / 2);
+}
+
+std::vector<StraightSegment> isotropic(double from, double to) {
+  return resolve(
+      {from, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to < from), ExtentKind::target_nu, to}}});
+}
+
+}  // namespace
+
+void read_preparation(const Json& document, PreparationOptions& o) {
+  const auto take = [&](const char* key, auto& target) {
+    if (document.contains(key)) document[key].get_to(target);
+  };
+  take("particles", o.packing.particles);
+  take("size_width", o.packing.size_width);
+  take("mean_radius", o.packing.mean_radius);
+  take("density", o.packing.material.density);
+  take("stiffness", o.packing.material.stiffness);
+  take("contact_viscosity", o.packing.material.contact_viscosity);
+  take("background_viscosity", o.packing.material.background_viscosity);
+  take("time_step_fraction", o.engine.time_step_fraction);
+  take("skin", o.engine.skin);
+  take("portable_bits", o.engine.portable_bits);
+  take("strain_rate", o.drive.strain_rate);
+  take("quasi_static_step", o.drive.quasi_static_step);
+  take("nu_start", o.nu_start);
+  take("nu_max", o.nu_max);
+  take("rows", o.rows);
+  if (document.contains("nu_end")) o.nu_end = document["nu_end"].get<double>();
+  if (document.contains("precision")) {
+    const Json& name = document["precision"];
+    o.engine.precision = name == "double"      ? Precision::full
+                         : name == "reference" ? Precision::reference
+                                               : Precision::mixed;
+  }
+  if (document.contains("driving")) {
+    o.drive.profile = document["driving"] == "constant" ? Profile::constant : Profile::cosine;
+  }
+  if (document.contains("transport")) {
+    o.drive.transport = document["transport"] == "wall" ? Transport::wall : Transport::homogeneous;
+  }
+}
+
+OrderedJson preparation_to_json(const PreparationOptions& o) {
+  const Material& material = o.packing.material;
+  return {{"particles", o.packing.particles},
+          {"size_width", o.packing.size_width},
+          {"mean_radius", o.packing.mean_radius},
+          {"density", material.density},
+          {"stiffness", material.stiffness},
+          {"contact_viscosity", material.contact_viscosity},
+          {"background_viscosity", material.background_viscosity},
+          {"time_step_fraction", o.engine.time_step_fraction},
+          {"skin", o.engine.skin},
+          {"precision", to_string(o.engine.precision)},
+          {"portable_bits", o.engine.portable_bits},
+          {"strain_rate", o.drive.strain_rate},
+          {"quasi_static_step", o.drive.quasi_static_step},
+          {"driving", to_string(o.drive.profile)},
+          {"transport", to_string(o.drive.transport)},
+          {"rows", o.rows},
+          {"nu_start", o.nu_start},
+          {"nu_max", o.nu_max},
+          {"nu_end", o.nu_end.value_or(o.nu_start)}};
+}
+
+double expected_steps(const PreparationOptions& o, const std::vector<StraightSegment>& segments) {
+  const double dt = o.engine.time_step_fraction * shortest_collision(o.packing);
+  double steps = 0;
+  if (o.drive.quasi_static_step > 0) {
+    for (const StraightSegment& segment : segments)
+      steps += kPassesPerMinimum * static_cast<double>(quasi_static_steps(segment, o.drive, o.rows));
+    return steps;
+  }
+  for (const StraightSegment& segment : segments) {
+    steps += std::ceil(make_drive(segment, o.drive, Eigen::Matrix3d::Identity()).duration / dt);
+  }
+  return steps;
+}
+
+double expected_steps(const PreparationOptions& o) {
+  PreparationOptions gas = o;
+  gas.drive.quasi_static_step = 0;
+  return expected_steps(gas, isotropic(o.nu_gas, o.nu_start)) / o.gas_compression_factor +
+         expected_steps(o, isotropic(o.nu_start, o.nu_max)) +
+         expected_steps(o, isotropic(o.nu_max, o.nu_end.value_or(o.nu_start)));
+}
+
+void complete_preparation(PreparationOptions& o, const std::string& name) {
+  const auto refuse = [&](const std::string& what) { throw InvalidInput(fmt::format("{}: {}", name, what)); };
+  if (!std::isfinite(shortest_collision(o.packing))) {
+    refuse(
+        fmt::format("contact_viscosity: {} kg/s overdamps the contacts of the smallest spheres, which then never end; "
+                    "give less than {:.4g}",
+                    o.packing.material.contact_viscosity,
+                    std::sqrt(2 * o.packing.material.stiffness *
+                              sphere_mass(o.packing.material, smallest_radius(o.packing)))));
+  }
+  if (!(o.nu_start < o.nu_max)) refuse(fmt::format("nu_max: {} must lie above nu_start = {}", o.nu_max, o.nu_start));
+  if (!o.nu_end) {
+    double lowest = kUnloadTo;
+    for (const double nu : o.keep_unloading) lowest = std::min(lowest, nu);
+    o.nu_end = std::max(o.nu_start, lowest);
+  }
+  if (!(*o.nu_end >= o.nu_start && *o.nu_end < o.nu_max)) {
+    refuse(fmt::format("nu_end: {} must lie within [nu_start, nu_max) = [{}, {})", *o.nu_end, o.nu_start, o.nu_max));
+  }
+  // the densest state tells a reader of the branches' series which packing they belong to
+  if (o.keep_loading.empty() && o.keep_unloading.empty()) o.keep_loading.push_back(o.nu_max);
+  for (const double nu : o.keep_loading) {
+    if (nu < o.nu_start || nu > o.nu_max) {
+      refuse(fmt::format("densities: {} is not on the loading branch [nu_start, nu_max] = [{}, {}]", nu, o.nu_start,
+                         o.nu_max));
+    }
+  }
+  for (const double nu : o.keep_unloading) {
+    if (nu < *o.nu_end || nu > o.nu_max) {
+      refuse(fmt::format("densities: {} is not on the unloading branch [nu_end, nu_max] = [{}, {}]", nu, *o.nu_end,
+                         o.nu_max));
+    }
+  }
+  if (const double steps = expected_steps(o); !(steps <= kMaxSteps)) {
+    refuse(
+        fmt::format("strain_rate: {} 1/s makes the preparation {:.3g} steps long, more than {:.0g}; give a larger one",
+                    o.drive.strain_rate, steps, kMaxSteps));
+  }
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,103 @@
+#include "dem/runs/run_store.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <vector>
+
+#include "model/files/digest.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/vocabulary/engine_version.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::dem {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Besides the named ones, what a killed writer left under a temporary name.
+bool is_scratch(const std::string& name) {
+  return name == kCheckpoint || name == kPreviousCheckpoint || name == kProgress || name.starts_with('.');
+}
+
+void remove_scratch(const fs::path& run) {
+  std::vector<fs::path> scratch;
+  std::error_code ignored;  // what stays is no part of the run
+  for (const auto& entry : fs::directory_iterator(run, ignored)) {
+    if (is_scratch(entry.path().filename().string())) scratch.push_back(entry.path());
+  }
+  for (const fs::path& file : scratch) fs::remove(file, ignored);
+}
+
+}  // namespace
+
+std::string run_key(const Json& request) {
+  return sha256(Json{{"engine_version", kEngineVersion}, {"request", request}}.dump());
+}
+
+RunStore::RunStore(const fs::path& parent, const std::string& name) : root_(make_subfolder(parent, name)) {
+  const fs::path file = root_ / ".lock";
+  lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (lock_ < 0) throw Error(fmt::format("{}: cannot be created: {}", file.string(), std::strerror(errno)));
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    close(lock_);
+    throw Error(
+        fmt::format("{}: another grainlaw works in this folder; wait for it or give another -o", root_.string()));
+  }
+}
+
+RunStore::~RunStore() { close(lock_); }
+
+fs::path RunStore::folder(const std::string& key) const { return root_ / key; }
+
+std::optional<Json> RunStore::find(const std::string& key) const {
+  const fs::path run = folder(key);
+  if (!fs::exists(run / "run.json")) return std::nullopt;
+  try {
+    Json record = read_json(run / "run.json", JsonSource::own);
+    if (record.at("key") != key) return std::nullopt;
+    for (const auto& file : record.at("files").items()) {
+      if (!is_safe_name(file.key()) || sha256_of_file(run / file.key()) != file.value()) return std::nullopt;
+    }
+    remove_scratch(run);
+    return record;
+  } catch (const Error&) {
+    return std::nullopt;  // damaged: it is run again
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+fs::path RunStore::begin(const std::string& key) const {
+  std::error_code error;
+  fs::remove_all(folder(key), error);
+  return make_subfolder(root_, key);
+}
+
+fs::path RunStore::reopen(const std::string& key) const {
+  return fs::exists(folder(key) / "run.json") ? begin(key) : make_subfolder(root_, key);
+}
+
+void RunStore::finish(const std::string& key, const Json& request, const OrderedJson& record) const {
+  const fs::path run = folder(key);
+  OrderedJson document{{"format", "grainlaw run"}, {"format_version", 1}, {"key", key}};
+  for (const auto& item : record.items()) document[item.key()] = item.value();
+  document["request"] = OrderedJson(request);
+  OrderedJson& files = document["files"] = OrderedJson::object();
+  std::map<std::string, std::string> sums;
+  for (const auto& entry : fs::directory_iterator(run)) {
+    const std::string name = entry.path().filename().string();
+    if (!is_scratch(name)) sums[name] = sha256_of_file(entry.path());
+  }
+  for (const auto& [name, sum] : sums) files[name] = sum;
+  write_json(run / "run.json", document);
+  remove_scratch(run);
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,50 @@
+#pragma once
+// Finished runs, found again by what they are a function of: FOLDER/<key>/ holds a run's files and, written last,
+// run.json with their digests. The key is the SHA-256 of the canonical JSON of the request and the engine's version.
+// The folder of an unfinished run holds what it can go on from. One process works in a store at a time.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "model/files/json_document.hpp"
+
+namespace grainlaw::dem {
+
+/// 64 hexadecimal digits. `request` must hold everything that changes the result and nothing else.
+std::string run_key(const Json& request);
+
+/// Scratch files of a run in progress.
+inline constexpr const char* kCheckpoint = "checkpoint";
+inline constexpr const char* kPreviousCheckpoint = "checkpoint.previous";
+inline constexpr const char* kProgress = "progress.json";  ///< what a preparation has yielded so far
+
+class RunStore {
+ public:
+  /// Creates parent/name when absent and locks it until destruction. Throws Error when another process works there.
+  RunStore(const std::filesystem::path& parent, const std::string& name);
+  ~RunStore();
+  RunStore(const RunStore&) = delete;
+  RunStore& operator=(const RunStore&) = delete;
+
+  std::filesystem::path folder(const std::string& key) const;
+
+  /// run.json of a finished run whose files are as they were written; nothing otherwise. Scratch files that a kill left
+  /// beside a finished run are removed.
+  std::optional<Json> find(const std::string& key) const;
+
+  /// An empty folder for the run; what an unfinished or damaged run left there is removed.
+  std::filesystem::path begin(const std::string& key) const;
+
+  /// The folder of an unfinished run as it is, or an empty one.
+  std::filesystem::path reopen(const std::string& key) const;
+
+  /// Writes run.json: {format, key, request, `record`'s keys, files: {name: SHA-256}}, then removes the scratch files.
+  void finish(const std::string& key, const Json& request, const OrderedJson& record) const;
+
+ private:
+  std::filesystem::path root_;
+  int lock_ = -1;
+};
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,104 @@
+#include "dem/runs/test_file.hpp"
+
+#include <fmt/format.h>
+
+#include "model/files/digest.hpp"
+#include "dem/runs/engine_path.hpp"
+#include "model/files/path_json.hpp"
+#include "dem/runs/preparation_json.hpp"
+#include "model/files/schema.hpp"
+#include "model/files/one_line.hpp"
+#include "dem/files/sphere_table.hpp"
+#include "dem/files/state_file.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+Eigen::Matrix3d cell_from(const Json& rows) {
+  Eigen::Matrix3d H;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) H(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)].get<double>();
+  }
+  return H;
+}
+
+Start start_from(const Json& document, const std::string& name) {
+  Start start = Start::preparation;
+  int given = 0;
+  for (const auto& [key, value] :
+       {std::pair{"initial", Start::kept}, {"spheres", Start::spheres}, {"state", Start::state}}) {
+    if (!document.contains(key)) continue;
+    start = value;
+    ++given;
+  }
+  if (given > 1) throw InvalidInput(fmt::format("{}: initial, spheres and state exclude each other; give one", name));
+  if (start == Start::preparation && document.contains("segments")) {
+    throw InvalidInput(fmt::format("{}: segments: start nowhere; give initial, spheres or state", name));
+  }
+  const auto only_with = [&](const char* key, Start wanted, const char* what) {
+    if (document.contains(key) && start != wanted)
+      throw InvalidInput(fmt::format("{}: {}: belongs to {}; remove it", name, key, what));
+  };
+  only_with("cell", Start::spheres, "spheres");
+  only_with("keep", Start::preparation, "a preparation without segments");
+  if (document.contains("probes") && start == Start::preparation) {
+    throw InvalidInput(fmt::format("{}: probes: belong to a test; give initial, spheres or state", name));
+  }
+  if (start == Start::spheres && !document.contains("cell")) {
+    throw InvalidInput(fmt::format("{}: misses the key 'cell'; give three rows of three numbers [m]", name));
+  }
+  if (start == Start::kept && !document.contains("segments")) {
+    throw InvalidInput(
+        fmt::format("{}: misses the key 'segments'; give the path from 'initial', or 'keep' instead of it", name));
+  }
+  return start;
+}
+
+}  // namespace
+
+TestFile read_test(const std::filesystem::path& file) {
+  const Json document = read_json(file, JsonSource::user);
+  const std::string name = one_line(file.string(), 200);
+  check_schema(document, Schema::test, name);
+  TestFile test;
+  test.start = start_from(document, name);
+  PreparationOptions& preparation = test.preparation;
+  read_preparation(document, preparation);
+  preparation.packing.seed = document.value("seed", preparation.packing.seed);
+  test.relax = document.value("relax", false);
+  if (document.contains("probes")) test.probes = probes_from_json(document["probes"]);
+  if (test.start == Start::kept) {
+    (branch_from_json(document["initial"]) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
+        .push_back(document["initial"]["nu"].get<double>());
+  }
+  if (document.contains("keep")) {
+    for (const Json& kept : document["keep"]) {
+      (branch_from_json(kept) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
+          .push_back(kept["nu"].get<double>());
+    }
+  }
+  complete_preparation(preparation, name);
+  if (test.start == Start::preparation) return test;
+
+  const auto beside = [&](const char* key) { return file.parent_path() / document[key].get<std::string>(); };
+  if (test.start == Start::spheres) {
+    test.given = read_spheres(beside("spheres"), cell_from(document["cell"]), preparation.packing.material);
+    test.given_digest = sha256(sha256_of_file(beside("spheres")) + document["cell"].dump());
+  } else if (test.start == Start::state) {
+    test.given = read_state(beside("state"));
+    test.given_digest = sha256_of_file(beside("state"));
+  }
+  Json path{{"initial", document.value("initial", Json::object())},
+            {"segments", document.value("segments", Json::array())}};
+  if (test.given) path["initial"]["nu"] = volume_fraction(test.given->packing);
+  test.path = path_from_json(path, name, "", false);
+  if (const double steps = expected_steps(preparation, engine_path(test.path, name)); !(steps <= kMaxSteps)) {
+    throw InvalidInput(
+        fmt::format("{}: strain_rate: the test would take {:.3g} steps, more than {:.0g}; give a larger one", name,
+                    steps, kMaxSteps));
+  }
+  return test;
+}
+
+}  // namespace grainlaw::dem

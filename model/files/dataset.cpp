@@ -1,0 +1,155 @@
+#include "model/files/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "model/files/digest.hpp"
+#include "model/files/path_json.hpp"
+#include "model/files/schema.hpp"
+#include "model/files/series_csv.hpp"
+#include "model/files/one_line.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw {
+namespace {
+
+namespace fs = std::filesystem;
+
+OrderedJson packing_to_json(const PackingInfo& packing) {
+  return {{"seed", packing.seed},
+          {"particles", packing.particles},
+          {"size_width", packing.size_width},
+          {"mean_radius", packing.mean_radius},
+          {"stiffness", packing.stiffness}};
+}
+
+/// What the digest of a data set covers of a test.
+OrderedJson identity(const DatasetTest& test) {
+  OrderedJson identity{{"name", test.record.name},
+                       {"role", to_string(test.record.role)},
+                       {"path", path_to_json(test.record.path)},
+                       {"packing", packing_to_json(test.record.packing)},
+                       {"sha256", test.sha256}};
+  if (!test.probes_sha256.empty()) identity["probes_sha256"] = test.probes_sha256;
+  return identity;
+}
+
+std::string digest_of(const Dataset& dataset) {
+  Json identities = Json::array();
+  for (const DatasetTest& test : dataset.tests) identities.push_back(Json(identity(test)));
+  return sha256(identities.dump());
+}
+
+std::vector<std::uint64_t> seeds_of(const Dataset& dataset) {
+  std::set<std::uint64_t> seeds;
+  for (const DatasetTest& test : dataset.tests) seeds.insert(test.record.packing.seed);
+  return {seeds.begin(), seeds.end()};
+}
+
+PackingInfo packing_from(const Json& object) {
+  PackingInfo packing;
+  packing.seed = object["seed"];
+  packing.particles = object.value("particles", std::int64_t{0});
+  packing.size_width = object.value("size_width", 0.0);
+  packing.mean_radius = object["mean_radius"];
+  packing.stiffness = object["stiffness"];
+  return packing;
+}
+
+DatasetTest read_test(const Json& object, const fs::path& folder, const std::string& index, const std::string& place) {
+  DatasetTest test;
+  test.record.name = object["name"];
+  test.record.role = value_of<Role>(object["role"].get<std::string>(), "role");
+  test.record.path = path_from_json(object["path"], index, place + ".path.", true);
+  test.record.packing = packing_from(object["packing"]);
+  const fs::path file = folder / (test.record.name + ".csv");
+  test.record.rows = read_series(file, test.record.path, test.record.packing);
+  test.sha256 = sha256_of_file(file);
+  if (object.contains("sha256") && object["sha256"] != test.sha256) {
+    throw InvalidInput(
+        fmt::format("{}: is not the file that {} was written with (SHA-256 differs); restore it, or remove {}.sha256 "
+                    "and digest from {} to accept it",
+                    file.string(), index, place, index));
+  }
+  test.probes_sha256 = object.value("probes_sha256", "");
+  const fs::path probes = folder / kProbesFolder / (test.record.name + ".csv");
+  if (!test.probes_sha256.empty() && sha256_of_file(probes) != test.probes_sha256) {
+    throw InvalidInput(fmt::format("{}: is not the file that {} was written with (SHA-256 differs); restore it",
+                                   probes.string(), index));
+  }
+  test.run = object.value("run", "");
+  if (object.contains("cost")) {
+    const Json& cost = object["cost"];
+    test.cost = {cost.value("steps", std::uint64_t{0}), cost.value("time_step", 0.0), cost.value("seconds", 0.0)};
+  }
+  if (object.contains("warnings")) test.warnings = object["warnings"].get<std::vector<std::string>>();
+  return test;
+}
+
+}  // namespace
+
+Dataset read_dataset(const fs::path& folder) {
+  const fs::path index = folder / "dataset.json";
+  const std::string name = one_line(index.string(), 200);
+  const Json document = read_json(index, JsonSource::own);
+  check_schema(document, Schema::dataset, name);
+  Dataset dataset;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < document["tests"].size(); ++i) {
+    const Json& object = document["tests"][i];
+    const std::string place = fmt::format("tests[{}]", i);
+    if (!names.insert(object["name"]).second) {
+      throw InvalidInput(
+          fmt::format("{}: {}.name: '{}' is given twice; rename one", name, place, object["name"].get<std::string>()));
+    }
+    dataset.tests.push_back(read_test(object, folder, name, place));
+  }
+  dataset.spec = document.value("spec", Json());
+  dataset.provenance = document.value("provenance", Json());
+  if (document.contains("seeds")) {
+    dataset.seeds = document["seeds"].get<std::vector<std::uint64_t>>();
+  } else {
+    dataset.seeds = seeds_of(dataset);
+  }
+  dataset.digest = digest_of(dataset);
+  if (document.contains("digest") && document["digest"] != dataset.digest) {
+    throw InvalidInput(fmt::format("{}: digest: does not match the tests, which give {}; remove the key to accept them",
+                                   name, dataset.digest));
+  }
+  return dataset;
+}
+
+std::vector<TestRecord> tests_of(const Dataset& dataset, Role role) {
+  std::vector<TestRecord> tests;
+  for (const DatasetTest& test : dataset.tests) {
+    if (test.record.role == role) tests.push_back(test.record);
+  }
+  return tests;
+}
+
+void write_dataset_index(const fs::path& folder, Dataset& dataset) {
+  OrderedJson tests = OrderedJson::array();
+  for (DatasetTest& test : dataset.tests) {
+    test.sha256 = sha256_of_file(folder / (test.record.name + ".csv"));
+    OrderedJson object = identity(test);
+    object["rows"] = test.record.rows.size();
+    if (!test.run.empty()) object["run"] = test.run;
+    object["cost"] = {{"steps", test.cost.steps}, {"time_step", test.cost.time_step}, {"seconds", test.cost.seconds}};
+    object["warnings"] = test.warnings;
+    tests.push_back(object);
+  }
+  dataset.digest = digest_of(dataset);
+  OrderedJson document;
+  document["format"] = "grainlaw dataset";
+  document["format_version"] = 1;
+  document["digest"] = dataset.digest;
+  if (dataset.seeds.empty()) dataset.seeds = seeds_of(dataset);
+  if (!dataset.seeds.empty()) document["seeds"] = dataset.seeds;
+  if (!dataset.spec.is_null()) document["spec"] = OrderedJson(dataset.spec);
+  if (!dataset.provenance.is_null()) document["provenance"] = OrderedJson(dataset.provenance);
+  document["tests"] = tests;
+  write_json(folder / "dataset.json", document);
+}
+
+}  // namespace grainlaw

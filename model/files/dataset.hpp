@@ -1,0 +1,51 @@
+#pragma once
+// A data set on disk: FOLDER/dataset.json (spec, seeds, versions, digests, one entry for each test) and one
+// FOLDER/NAME.csv for each test; FOLDER/probes/NAME.csv for those that were probed on their way.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/files/json_document.hpp"
+#include "model/vocabulary/test_record.hpp"
+
+namespace grainlaw {
+
+/// What the run behind a test took.
+struct RunCost {
+  std::uint64_t steps = 0;  ///< time steps
+  double time_step = 0;     ///< dt [s]
+  double seconds = 0;       ///< wall time [s]
+};
+
+struct DatasetTest {
+  TestRecord record;
+  std::string sha256;                 ///< of the CSV file
+  std::string run;                    ///< key of the run that made it; empty when unknown
+  RunCost cost;                       ///< zero when unknown
+  std::vector<std::string> warnings;  ///< of the run
+  std::string probes_sha256 = {};     ///< of probes/NAME.csv; empty without probes
+};
+
+inline constexpr const char* kProbesFolder = "probes";  ///< beside dataset.json
+
+struct Dataset {
+  std::vector<DatasetTest> tests;
+  Json spec;  ///< resolved SPEC; null when unknown
+  std::vector<std::uint64_t> seeds;
+  Json provenance;     ///< of the maker; null when unknown
+  std::string digest;  ///< SHA-256 over names, roles, paths, packings and CSV digests
+};
+
+/// Reads and checks everything. Throws InvalidInput naming file, key or row; digests that are given must match.
+Dataset read_dataset(const std::filesystem::path& folder);
+
+/// The records of one role.
+std::vector<TestRecord> tests_of(const Dataset& dataset, Role role);
+
+/// Writes dataset.json last; the CSV files must already be in `folder` (their digests are taken from there).
+/// Sets digest, the tests' sha256 and, when empty, seeds.
+void write_dataset_index(const std::filesystem::path& folder, Dataset& dataset);
+
+}  // namespace grainlaw

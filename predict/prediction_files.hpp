@@ -1,0 +1,69 @@
+#pragma once
+// The folder of a prediction: prediction.json, one CSV for each curve, and with --dem the new runs as a data set in
+// dem/ and comparison.json.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/files/dataset.hpp"
+#include "predict/compare.hpp"
+#include "predict/predict.hpp"
+#include "predict/rung_advice.hpp"
+
+namespace grainlaw::predict {
+
+enum class Initial { law, measured };  ///< start of a prediction: the calibrated law, or the packing's measured values
+constexpr auto names_of(Initial) { return std::array{"law", "measured"}; }
+
+/// The law along the path.
+struct PredictedCurve {
+  Rung model = Rung::evolution;
+  Initial initial = Initial::law;
+  std::optional<std::uint64_t> seed;  ///< of the DEM run at whose rows the curve was computed; none: equal steps
+  std::string file;                   ///< CSV in the prediction's folder
+  Prediction prediction;
+};
+
+/// One curve against one DEM run, or the mean over runs.
+struct CurveComparison {
+  Rung model = Rung::evolution;
+  Initial initial = Initial::law;
+  std::optional<std::uint64_t> seed;  ///< none: mean over seeds (largest: of the seed where it is largest)
+  Comparison comparison;     ///< test "mean" when none
+};
+
+/// What a richer rung changes on the curves from the law's start.
+struct RungChange {
+  Rung cheaper = Rung::reduced, richer = Rung::evolution;
+  RungDifference difference;
+};
+
+struct PredictionFolder {
+  std::string name;  ///< last part of the folder's path
+  Path path;
+  RungAdvice needed;       ///< rung that the path needs
+  std::vector<RungChange> changes;  ///< none where the law decides the strain: no two rows are at the same strain
+  std::string bands;                ///< one line: which there are, or why there are none
+  std::vector<PredictedCurve> curves;
+  std::optional<Dataset> dem;  ///< the runs in dem/
+  std::vector<CurveComparison> comparisons;
+  Json parameters;  ///< file, sha256, dataset_digest of the parameters used
+  Json provenance;
+};
+
+/// Writes curves, prediction.json and, when there are DEM runs, comparison.json; dem/ must already be written.
+void write_prediction(const std::filesystem::path& folder, const PredictionFolder& content);
+
+/// `rung` of prediction.json and of `predict --json`.
+OrderedJson rung_to_json(const PredictionFolder& content);
+
+/// Throws InvalidInput naming file and key.
+PredictionFolder read_prediction(const std::filesystem::path& folder);
+
+/// Mean of each quantity over the seeds of a model and initial.
+std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>& comparisons);
+
+}  // namespace grainlaw::predict
