@@ -115,17 +115,11 @@ class ControlledWalk {
 PredictedRow row_of(const ControlledState& y, int segment, double nu_0, const Deviator<double>& N) {
   PredictedRow row;
   row.segment = segment;
-  row.strain.tensor = y.strain;
-  row.eps_vol = y.strain.trace();
-  row.eps_dev = deviatoric_norm(y.strain);
+  set_strain(row, {y.strain});
   row.shear_path = y.shear_path;
   row.nu = nu_0 * std::exp(-row.eps_vol);
   row.state = y.law;
-  row.s_dev = y.law.sigma.norm() / y.law.P;
-  row.F_dev = y.law.F.norm();
-  const bool sheared = !N.isZero();
-  row.s_par = sheared ? y.law.sigma.dot(N) / y.law.P : Observation::undefined;
-  row.F_par = sheared ? y.law.F.dot(N) : Observation::undefined;
+  set_ratios(row, y.law.P, y.law.sigma, y.law.F, N);
   return row;
 }
 

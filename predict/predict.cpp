@@ -69,18 +69,11 @@ PredictedRow row_at(const StraightSegment& segment, const OutputPoint& point, do
                     const LawState<double>& state, const Deviator<double>& N) {
   PredictedRow row;
   row.segment = point.segment;
-  row.strain = segment.strain(point.e);
-  row.eps_vol = row.strain.tensor.trace();
-  row.eps_dev = deviatoric_norm(row.strain.tensor);
+  set_strain(row, segment.strain(point.e));
   row.shear_path = path_before + segment.eps_dev_rate() * point.e;
   row.nu = segment.nu(point.e);
   row.state = state;
-  const bool jammed = state.P > 0;
-  row.s_dev = jammed ? state.sigma.norm() / state.P : kNaN;
-  row.F_dev = state.F.norm();
-  const bool sheared = !N.isZero();
-  row.s_par = sheared && jammed ? state.sigma.dot(N) / state.P : kNaN;
-  row.F_par = sheared ? state.F.dot(N) : kNaN;
+  set_ratios(row, state.P, state.sigma, state.F, N);
   return row;
 }
 

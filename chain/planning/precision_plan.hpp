@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "model/vocabulary/enum_names.hpp"
+
 namespace grainlaw::chain {
 
 /// What a plan chooses; everything else is the SPEC's.

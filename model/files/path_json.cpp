@@ -120,10 +120,8 @@ void append_segment(const Json& object, const std::string& where, bool both, std
   if (has_cycles && object.contains("extent"))
     throw InvalidInput(fmt::format("{}: has extent and cycles; give one of them", where));
   if (!has_cycles && !object.contains("extent"))
-    throw InvalidInput(fmt::format(
-        "{}: misses the key 'extent'; give one of eps_dev, eps_vol, target_nu, target_eps_dev, target_P_star, "
-        "target_stress_ratio, or cycles",
-        where));
+    throw InvalidInput(fmt::format("{}: misses the key 'extent'; give one of {}, or cycles", where,
+                                   list_of_names<ExtentKind>()));
   if (has_cycles && !segment.conditions.empty())
     throw InvalidInput(
         fmt::format("{}.cycles: are of strain; give segments with an extent where rates are free", where));

@@ -40,13 +40,19 @@ std::optional<E> find_value(std::string_view name) {
   return std::nullopt;
 }
 
+/// "a, b, c", for messages.
+template <NamedEnum E>
+std::string list_of_names() {
+  std::string list;
+  for (const char* name : names_of(E{})) list.append(list.empty() ? "" : ", ").append(name);
+  return list;
+}
+
 /// The value of a name. Throws InvalidInput "WHAT: 'NAME' is none; give one of a, b, c".
 template <NamedEnum E>
 E value_of(std::string_view name, const char* what) {
   if (const auto value = find_value<E>(name)) return *value;
-  std::string known;
-  for (const char* each : names_of(E{})) known.append(known.empty() ? "" : ", ").append(each);
-  throw InvalidInput(std::string(what) + ": '" + std::string(name) + "' is none; give one of " + known);
+  throw InvalidInput(std::string(what) + ": '" + std::string(name) + "' is none; give one of " + list_of_names<E>());
 }
 
 }  // namespace grainlaw
