@@ -6,13 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
+#include "fit/data/outliers.hpp"
+#include "fit/data/packing_scatter.hpp"
+#include "fit/staged_laws.hpp"
 #include "fit/stages/density_law_fit.hpp"
 #include "fit/stages/evolution_fit.hpp"
 #include "fit/stages/lode_fit.hpp"
 #include "fit/stages/memory_fit.hpp"
-#include "fit/statistics/outliers.hpp"
-#include "fit/stages/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -31,15 +32,15 @@ std::vector<std::string> unseen_laws(const std::vector<ShearFit>& shear) {
 
 void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& calibration,
                     const CalibrationOptions& options) {
-  const auto estimate = [&](const char* name) -> Estimate& { return calibration.estimates[parameter_index(name)]; };
+  const auto estimate = [&](const char* name) -> Estimate& { return calibration.law.estimates[parameter_index(name)]; };
   if (options.coupling == Coupling::energy) {
     estimate("anisotropy.a0") = {0, kUndefined, Status::not_identified, "not part of the law with coupling energy"};
     const auto i = static_cast<Eigen::Index>(parameter_index("anisotropy.a1"));
     const auto j = static_cast<Eigen::Index>(parameter_index("anisotropy.a2"));
-    const TiedCoupling tied = tied_a1(trajectories, calibration.parameters, estimate("anisotropy.a2"),
+    const TiedCoupling tied = tied_a1(trajectories, calibration.law.parameters, estimate("anisotropy.a2"),
                                       calibration.errors.influence.row(j), options);
     estimate("anisotropy.a1") = tied.a1;
-    if (tied.a1.status == Status::tied) calibration.parameters.anisotropy.a1 = tied.a1.value;
+    if (tied.a1.status == Status::tied) calibration.law.parameters.anisotropy.a1 = tied.a1.value;
     calibration.errors.influence.row(i) = tied.influence;
     calibration.errors.degrees_of_freedom(i) = tied.a1.degrees_of_freedom;
   } else {
@@ -48,32 +49,32 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
   }
 }
 
-void fit_memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
-                     const CalibrationOptions& options, const RunControl& control) {
-  for (const auto& [name, value] :
-       {std::pair{"memory.m", calibration.parameters.memory.m}, {"memory.a_P", calibration.parameters.memory.a_P}})
-    calibration.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
-                                                    "by docs/decisions/0005-memory-law.md"};
+/// The stage of the memory rung, or why there is none; what is fixed by decision is said as well.
+StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
+                            const CalibrationOptions& options) {
+  for (const auto& [name, value] : {std::pair{"memory.m", calibration.law.parameters.memory.m},
+                                    {"memory.a_P", calibration.law.parameters.memory.a_P}})
+    calibration.law.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
+                                                        "by docs/decisions/0005-memory-law.md"};
   for (const char* group :
        {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {
-    if (has_values(calibration, group)) continue;
-    record(calibration,
-           no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state"));
-    return;
+    if (has_values(calibration.law, group)) continue;
+    return no_memory(std::string(group) + " is not identified; shear by D2 at more densities, to steady state");
   }
-  record(calibration, fit_memory(trajectories, calibration.parameters, options, control, calibration.errors));
+  return memory_stage(trajectories, options);
 }
 
-void set_ranges(const std::vector<Trajectory>& trajectories, Calibration& calibration) {
-  calibration.nu_min = 1;
+ValidRange range_of(const std::vector<Trajectory>& trajectories) {
+  ValidRange range{1, 0, 0, 0};
   for (const Trajectory& t : trajectories) {
     if (t.rows.empty()) continue;
     const double e = t.rows.back().e;
-    calibration.nu_min = std::min({calibration.nu_min, t.nu_start, t.nu(e)});
-    calibration.nu_max = std::max({calibration.nu_max, t.nu_start, t.nu(e)});
-    calibration.eps_dev_max = std::max(calibration.eps_dev_max, t.direction.de * e);
-    calibration.eps_vol_max = std::max(calibration.eps_vol_max, std::abs(t.direction.dx) * e);
+    range.nu_min = std::min({range.nu_min, t.nu_start, t.nu(e)});
+    range.nu_max = std::max({range.nu_max, t.nu_start, t.nu(e)});
+    range.eps_dev_max = std::max(range.eps_dev_max, t.direction.de * e);
+    range.eps_vol_max = std::max(range.eps_vol_max, std::abs(t.direction.dx) * e);
   }
+  return range;
 }
 
 }  // namespace
@@ -83,34 +84,24 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   check(options);
   const DataSet data = check_and_sort(tests);
   Calibration calibration = nothing_known();
-  calibration.coupling = options.coupling;
+  calibration.law.coupling = options.coupling;
   calibration.unused_tests = data.unused;
   calibration.warnings = outlier_warnings(data, options);
   fit_unloading_laws("ISO unloading", isotropic_series(data, options), calibration, options, control);
   fit_steady_laws(Mode::D2, data, calibration, options, control);
   fit_shear_laws(data, calibration, options, control);
   const std::vector<Trajectory> trajectories =
-      trajectories_of(data, calibration.parameters.isotropic.pressure.nu_c, options);
+      trajectories_of(data, calibration.law.parameters.isotropic.pressure.nu_c, options);
   const ByLodeAngle sheared = by_lode_angle(trajectories);
-  record(calibration, fit_evolution(sheared.reference, calibration.parameters, unseen_laws(calibration.shear), options,
-                                    control, calibration.errors));
+  run(evolution_stage(sheared.reference, unseen_laws(calibration.shear), options), calibration, options, control);
   set_anisotropy(sheared.reference, calibration, options);
-  record(calibration, fit_lode(sheared.others, calibration.parameters, options, control, calibration.errors));
-  fit_memory_rung(sheared.reference, calibration, options, control);
-  calibration.covariance = calibration.errors.covariance();
-  calibration.scatter = packing_scatter(data, calibration.parameters, options.iso_nu_min);
-  set_ranges(trajectories, calibration);
-  calibration.converged = all_converged(calibration);
+  run(lode_stage(sheared.others, options), calibration, options, control);
+  run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
+  calibration.law.covariance = calibration.errors.covariance();
+  calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
+  calibration.law.range = range_of(trajectories);
+  calibration.law.converged = all_converged(calibration);
   return calibration;
-}
-
-bool has_values(const Calibration& calibration, std::string_view group) {
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const std::string_view name = parameter_table()[i].name;
-    const bool member = name.starts_with(group) && (name.size() == group.size() || name[group.size()] == '.');
-    if (member && calibration.estimates[i].status == Status::not_identified) return false;
-  }
-  return true;
 }
 
 }  // namespace grainlaw::fit

@@ -8,37 +8,35 @@
 //   6 memory: what the memory rung adds, on the trajectories of 4, with the laws of the stages before
 // Validation tests are refused here, not filtered silently.
 
-#include <Eigen/Core>
-#include <array>
+#include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "fit/data/options.hpp"
+#include "fit/stages/shear_fit.hpp"
 #include "fit/statistics/inherited_error.hpp"
-#include "fit/options.hpp"
-#include "fit/outcome.hpp"
-#include "fit/statistics/packing_scatter.hpp"
-#include "model/parameters.hpp"
+#include "model/calibrated_law.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::fit {
 
+/// A calibration without one packing, leave_one_out.hpp.
+struct LeftOut {
+  std::uint64_t seed = 0;     ///< of the packing
+  std::vector<double> value;  ///< in the order of parameter_table(); NaN where not identified
+  std::string note;           ///< what went wrong; may be empty
+};
+
+/// The calibrated law and how it came about.
 struct Calibration {
-  Coupling coupling = Coupling::energy;
-  LawParameters<double> parameters;                 ///< not identified ones stay at their start and must not be read
-  std::array<Estimate, kParameterCount> estimates;  ///< in the order of parameter_table()
-  FoundErrors errors;                               ///< by packing; not in parameters.json
-  Eigen::MatrixXd covariance;                       ///< kParameterCount square, zero where there is no error
-  std::vector<Stage> stages;                        ///< in order of computation
-  std::vector<ShearFit> shear;                      ///< in the order of the tests
-  std::vector<std::string> unused_tests;            ///< calibration tests that no stage reads, e.g. ISO loading
-  std::vector<std::string> warnings;                ///< about the data, e.g. rows that stand out (outliers.hpp)
-  PackingScatter scatter;                           ///< between runs of one path on different packings
-  std::vector<LeftOut> left_out;                    ///< one per packing, when asked for (leave_one_out.hpp)
-  double nu_min = 0, nu_max = 0;                    ///< range of volume fraction of the rows that entered [-]
-  double eps_dev_max = 0, eps_vol_max = 0;          ///< largest |strain| of the calibration tests that entered [-]
-  bool converged = false;                           ///< all stages
+  CalibratedLaw law;
+  FoundErrors errors;                     ///< by packing; not in parameters.json
+  std::vector<Stage> stages;              ///< in order of computation
+  std::vector<ShearFit> shear;            ///< in the order of the tests
+  std::vector<std::string> unused_tests;  ///< calibration tests that no stage reads, e.g. ISO loading
+  std::vector<std::string> warnings;      ///< about the data, e.g. rows that stand out (outliers.hpp)
+  std::vector<LeftOut> left_out;          ///< one per packing, when asked for (leave_one_out.hpp)
 };
 
 /// Throws InvalidInput naming test, row and column when a validation test, a test without rows, a non-finite or
@@ -46,8 +44,5 @@ struct Calibration {
 /// Throws Interrupted. A stage that does not converge is reported, not thrown.
 Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOptions& options,
                       const RunControl& control);
-
-/// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
-bool has_values(const Calibration& calibration, std::string_view group);
 
 }  // namespace grainlaw::fit

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "fit/data_set.hpp"
-#include "fit/stages/density_series.hpp"
-#include "fit/stages/staged_laws.hpp"
+#include "fit/data/data_set.hpp"
+#include "fit/data/density_series.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -18,8 +18,8 @@ bool is_uniaxial(const TestRecord& test) {
 
 /// What is said of `name` once its stages have run.
 Description finished(const std::string& name, Calibration calibration) {
-  calibration.covariance = calibration.errors.covariance();
-  calibration.converged = all_converged(calibration);
+  calibration.law.covariance = calibration.errors.covariance();
+  calibration.law.converged = all_converged(calibration);
   return {name, std::move(calibration)};
 }
 
@@ -40,9 +40,10 @@ std::vector<Description> describe(const std::vector<TestRecord>& tests, double n
   if (points >= kPointsNeeded) {
     Calibration calibration = nothing_known();
     fit_unloading_laws("UNI unloading", series, calibration, options, control);
-    calibration.nu_min = least_nu(series);
+    calibration.law.range.nu_min = least_nu(series);
     for (const DensitySeries& s : series) {
-      for (const DensityPoint& p : s.points) calibration.nu_max = std::max(calibration.nu_max, p.nu);
+      for (const DensityPoint& p : s.points)
+        calibration.law.range.nu_max = std::max(calibration.law.range.nu_max, p.nu);
     }
     all.push_back(finished("UNI", std::move(calibration)));
   }
@@ -55,13 +56,13 @@ std::vector<Description> describe(const std::vector<TestRecord>& tests, double n
       });
       if (part.pure_shear.empty()) continue;
       Calibration calibration = nothing_known();
-      calibration.parameters.isotropic.pressure.nu_c = nu_c;
+      calibration.law.parameters.isotropic.pressure.nu_c = nu_c;
       fit_steady_laws(mode, part, calibration, options, control);
       fit_shear_laws(part, calibration, options, control);
       const auto [least, most] = std::minmax_element(calibration.shear.begin(), calibration.shear.end(),
                                                      [](const ShearFit& a, const ShearFit& b) { return a.nu < b.nu; });
-      calibration.nu_min = least->nu;
-      calibration.nu_max = most->nu;
+      calibration.law.range.nu_min = least->nu;
+      calibration.law.range.nu_max = most->nu;
       all.push_back(finished(to_string(mode) + (branch == Branch::loading ? "-loading" : ""), std::move(calibration)));
     }
   }

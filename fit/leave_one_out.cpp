@@ -19,9 +19,10 @@ LeftOut without(std::uint64_t seed, const std::vector<TestRecord>& tests, const 
   try {
     const Calibration calibration = calibrate(part, options, control);
     for (std::size_t i = 0; i < kParameterCount; ++i) {
-      if (calibration.estimates[i].status != Status::not_identified) left.value[i] = *fields(calibration.parameters)[i];
+      if (calibration.law.estimates[i].status != Status::not_identified)
+        left.value[i] = *fields(calibration.law.parameters)[i];
     }
-    if (!calibration.converged) left.note = "did not converge";
+    if (!calibration.law.converged) left.note = "did not converge";
   } catch (const InvalidInput& error) {
     left.note = error.what();
   }

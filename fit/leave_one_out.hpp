@@ -1,9 +1,6 @@
 #pragma once
-// The calibration again without each packing in turn: a check of the errors that the fit states by linear theory. From G
-// packings, theta_(g) without packing g,
-//   e^2 = (G - 1)/G sum_g (theta_(g) - mean)^2
-// is the jackknife's standard error, the stated one where the fit is linear in its parameters and packings have equal tests.
-// Source: Tukey, Ann. Math. Statist. 29 (1958) 614; Efron, The Jackknife (1982), section 3.
+// The calibration again without each packing in turn: a check of the errors that the fit states by linear theory, by the
+// jackknife (docs/theory/fit.md, section Leave one out).
 
 #include <string>
 #include <vector>
@@ -17,7 +14,7 @@ namespace grainlaw::fit {
 std::vector<LeftOut> leave_one_out(const std::vector<TestRecord>& tests, const CalibrationOptions& options,
                                    const RunControl& control);
 
-/// e of parameter number `i`; NaN when one of the fits does not identify it.
+/// The jackknife's standard error of parameter number `i`; NaN when one of the fits does not identify it.
 double jackknife_error(const std::vector<LeftOut>& fits, std::size_t i);
 
 /// The fit that moved parameter number `i` furthest from `value`; null without one that identifies it.

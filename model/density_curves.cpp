@@ -1,5 +1,6 @@
 #include "model/density_curves.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace grainlaw {
@@ -24,6 +25,11 @@ const std::vector<DensityCurve>& density_curves() {
       {"fabric_max", "{F}_{max}", {"fabric_max"}, [](P p, double nu) { return p.fabric_max.value(nu, p.shear_nu_c); }},
       {"fabric_rate", "{β}_{F}", {"fabric_rate"}, [](P p, double nu) { return p.fabric_rate.value(nu, p.shear_nu_c); }}};
   return curves;
+}
+
+bool has_values(const CalibratedLaw& law, const DensityCurve& curve) {
+  return std::all_of(curve.groups.begin(), curve.groups.end(),
+                     [&](const char* group) { return has_values(law, group); });
 }
 
 std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, const LawParameters<double>& published,

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/parameters.hpp"
+#include "model/calibrated_law.hpp"
 
 namespace grainlaw {
 
@@ -19,6 +19,9 @@ struct DensityCurve {
 /// C_star, rattler_fraction, P_star of ISO unloading and (steady_...) of steady D2; stress_ratio_max, stress_rate,
 /// fabric_max, fabric_rate.
 const std::vector<DensityCurve>& density_curves();
+
+/// Whether every parameter that the curve reads has a value.
+bool has_values(const CalibratedLaw& law, const DensityCurve& curve);
 
 struct CurvePoint {
   const DensityCurve* curve = nullptr;

@@ -7,30 +7,17 @@
 // s of P* is that of the volumetric strain times B* of ISO unloading at the row's nu; that of s_dev and F_dev is s_par's
 // and F_par's.
 
-#include <Eigen/Core>
-
 #include "predict/predict.hpp"
 
 namespace grainlaw::predict {
 
-/// Standard deviations between packings; NaN where they are not known, then there is no band of a single run.
-struct RunScatter {
-  double compression = std::numeric_limits<double>::quiet_NaN();         ///< of P*/B* [-]
-  double s_par = std::numeric_limits<double>::quiet_NaN();               ///< [-]
-  double F_par = std::numeric_limits<double>::quiet_NaN();               ///< [-]
-  double degrees_of_freedom = std::numeric_limits<double>::quiet_NaN();  ///< of these [-]
-};
+/// Sets the bands of all rows whose slopes are known, by the errors of `law`. `prediction` was made by this law and with
+/// Sensitivity::parameters its uncertain_parameters(). Without scatter between packings there are no bands of a single run.
+void add_bands(const CalibratedLaw& law, Prediction& prediction);
 
-/// What is known of the errors of a calibrated law.
-struct Uncertainty {
-  std::vector<std::size_t> parameters;  ///< indices in parameter_table(): those that have an error; none: no bands
-  Eigen::MatrixXd covariance;           ///< of these, square
-  Eigen::VectorXd degrees_of_freedom;   ///< of these, positive, may be infinite
-  RunScatter scatter;
-};
-
-/// Sets the bands of all rows whose slopes are known. `prediction` was made with Sensitivity::parameters those of
-/// `uncertainty` and with the law `parameters`.
-void add_bands(const LawParameters<double>& parameters, const Uncertainty& uncertainty, Prediction& prediction);
+/// predict() by `law` and within its range, with bands. `start_from_law`: as in Sensitivity.
+Prediction predict_with_bands(Rung rung, const CalibratedLaw& law, const std::vector<StraightSegment>& segments,
+                              const LawState<double>& start, bool start_from_law,
+                              const std::vector<OutputPoint>& points, const RunControl& control);
 
 }  // namespace grainlaw::predict

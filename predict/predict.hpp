@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "model/law.hpp"
+#include "model/calibrated_law.hpp"
 #include "model/vocabulary/path.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "model/vocabulary/test_record.hpp"
@@ -158,12 +158,6 @@ struct Prediction {
   std::vector<std::string> warnings;  ///< e.g. "nu = 0.85 lies outside the calibrated range 0.68-0.82"
 };
 
-/// Calibrated ranges, for the warnings: one for each way in which a prediction leaves them, and one where it unjams.
-struct ValidRange {
-  double nu_min = 0, nu_max = 1;  ///< volume fraction [-]
-  double eps_dev_max = 1e300;     ///< deviatoric strain from the start of a test [-]
-};
-
 /// P by Eq. (14), ISO unloading branch, at `nu`; no deviators. Throws InvalidInput when nu is not above jamming.
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu);
 
@@ -171,7 +165,7 @@ LawState<double> state_from_law(const LawParameters<double>& parameters, double 
 LawState<double> state_from_row(const Observation& row);
 
 /// The rows at `points` of the path `segments`, beginning at `start`. `coupling` and `tolerances` are not read by the
-/// reduced model. Throws InvalidInput for a start that is not jammed or points off the path; NotConverged with segment,
+/// reduced model. Warns once for each way in which the rows leave `range`. Throws InvalidInput for a start that is not jammed or points off the path; NotConverged with segment,
 /// strain and the solver's word when the solver fails, when y is not finite or t differs from the requested output;
 /// Interrupted.
 Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling coupling,

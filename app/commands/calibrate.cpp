@@ -7,17 +7,17 @@
 #include <iterator>
 
 #include "app/commands/calibrate_target.hpp"
-#include "app/files/calibration_file.hpp"
-#include "model/files/dataset.hpp"
-#include "chain/parameters_file.hpp"
-#include "dem/runs/spec_file.hpp"
-#include "model/files/output_folder.hpp"
-#include "app/published/verdicts.hpp"
 #include "app/report/report.hpp"
-#include "model/files/adopted_dataset.hpp"
 #include "dem/runs/dataset_runs.hpp"
+#include "dem/runs/spec_file.hpp"
 #include "fit/calibrate.hpp"
+#include "fit/calibration_file.hpp"
 #include "fit/leave_one_out.hpp"
+#include "fit/published/verdicts.hpp"
+#include "model/files/adopted_dataset.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -105,21 +105,22 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOpti
   session.watch.begin({1}, "");
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
   fit::Calibration calibration = fit::calibrate(tests, options, session.watch.control(0, "fit", session.stop));
+  calibration.law.dataset_digest = dataset.digest;
   if (options.profiles) {
     calibration.left_out =
         fit::leave_one_out(tests, options, session.watch.control(0, "fit without one packing", session.stop));
   }
-  ModeComparison modes;
-  modes.descriptions = fit::describe(described_tests(dataset), calibration.parameters.isotropic.pressure.nu_c, options,
-                                     session.watch.control(0, "fit of the other modes", session.stop));
-  modes.verdicts = verdicts_of(calibration, modes.descriptions, dataset.seeds.size());
+  fit::ModeComparison modes;
+  modes.descriptions = fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c,
+                                     options, session.watch.control(0, "fit of the other modes", session.stop));
+  modes.verdicts = fit::verdicts_of(calibration.law, modes.descriptions, dataset.seeds.size());
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
-  modes.claims = claims_of(shown, calibration, modes.descriptions, options.steady_from);
+  modes.claims = fit::claims_of(shown, calibration.law, modes.descriptions, options.steady_from);
   session.watch.end();
   const OrderedJson origin = provenance(session);
-  write_calibration(output / "calibration.json", calibration, options, modes, dataset.digest, origin);
-  chain::write_parameters(output / "parameters.json", {calibration, dataset.digest, Json(origin)});
+  fit::write_calibration(output / "calibration.json", calibration, options, modes, origin);
+  write_parameters(output / "parameters.json", {calibration.law, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {
     if (!stage.converged)
       session.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
@@ -186,10 +187,10 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
     if (spec) write_json(options.output / "spec.resolved.json", dem::spec_to_json(*spec));
     dataset = adopt(*given, from, dataset_output);
     log_warnings(dataset, session);
-    converged = fit_and_save(dataset, fit_options, options.output, session).converged;
+    converged = fit_and_save(dataset, fit_options, options.output, session).law.converged;
   } else {
     double fit_seconds = 0;
-    converged = simulate_and_fit(*spec, dataset, fit_seconds).converged;
+    converged = simulate_and_fit(*spec, dataset, fit_seconds).law.converged;
   }
   print_result(summary_of(options.output, dataset, converged, counts, session));
   return converged ? ExitCode::ok : ExitCode::not_converged;

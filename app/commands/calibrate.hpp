@@ -9,7 +9,7 @@
 
 #include "app/exit_code.hpp"
 #include "app/terminal/session.hpp"
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "model/parameters.hpp"
 
 namespace grainlaw::app {

@@ -8,11 +8,11 @@
 #include <map>
 #include <utility>
 
-#include "model/files/path_file.hpp"
-#include "model/files/output_folder.hpp"
 #include "chain/planning/plan_file.hpp"
 #include "chain/planning/plan_pilot.hpp"
 #include "chain/planning/planned_spec.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/files/path_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -38,16 +38,18 @@ chain::PlanSettings smaller(chain::PlanSettings pilot) {
 }
 
 /// The pilot's findings from its own runs and those at the coarser settings.
-chain::PlanFindings findings_of(const chain::PrecisionTarget& target, const chain::Scale& scale, const chain::PredictionError& known,
-                         const std::vector<TestRecord>& tests, const std::vector<TestRecord>& of_faster,
-                         const std::vector<TestRecord>& of_smaller, const chain::CostRates& rates) {
+chain::PlanFindings findings_of(const chain::PrecisionTarget& target, const chain::Scale& scale,
+                                const chain::PredictionError& known, const std::vector<TestRecord>& tests,
+                                const std::vector<TestRecord>& of_faster, const std::vector<TestRecord>& of_smaller,
+                                const chain::CostRates& rates) {
   const chain::PlanSettings& pilot = scale.pilot;
   const auto apart = [&](chain::Cause cause, const chain::PlanSettings& coarse) {
     return shape(cause, coarse, scale) - shape(cause, pilot, scale);
   };
   chain::PlanFindings findings{scale, pilot, {}, rates};
   for (const std::string& quantity : target.quantities) {
-    chain::QuantityFindings q{quantity, std::nan(""), chain::steady_scatter(tests, quantity, chain::plan_strains(pilot)), {}};
+    chain::QuantityFindings q{
+        quantity, std::nan(""), chain::steady_scatter(tests, quantity, chain::plan_strains(pilot)), {}};
     for (const chain::QuantityPrecision& p : known.quantities) {
       if (p.quantity == quantity) q.half_width = p.half_width;
     }
@@ -71,7 +73,8 @@ Json overrides(const dem::Spec& frame, const dem::Spec& planned) {
   return changed;
 }
 
-std::string table_of(const chain::TargetRun& run, const chain::PrecisionTarget& target, const dem::Spec& planned, const fs::path& output) {
+std::string table_of(const chain::TargetRun& run, const chain::PrecisionTarget& target, const dem::Spec& planned,
+                     const fs::path& output) {
   std::string text = fmt::format("{:>8} {:>9} {:>8} {:>5} {:>4} {:>6} {:>9} {:>9} {:>8}\n", "packings", "particles",
                                  "rate", "step", "nu", "strain", "seconds", "expected", "stated");
   for (const chain::TargetRound& r : run.rounds) {
@@ -128,14 +131,15 @@ ExitCode calibrate_for(const chain::PrecisionTarget& target, const dem::Spec& sp
   actions.calibrate = [&](const chain::PlanSettings& settings) {
     const fit::Calibration calibration =
         calibrate_with(chain::rounds_of(chain::planned_spec(spec, settings, target.path)), dataset, fit_seconds);
-    return chain::prediction_error(calibration, target.path, rehearsals(dataset));
+    return chain::prediction_error(calibration.law, target.path, rehearsals(dataset));
   };
   actions.explore = [&](const chain::PredictionError& known) {
     const chain::CostRates rates = chain::cost_rates(dataset, pilot_work, fit_seconds, session.threads);
     const fs::path folder = make_subfolder(options.output, "pilot");
     const auto coarser = [&](const char* name, const chain::PlanSettings& settings) {
-      return tests_of(simulate(chain::rounds_of(chain::planned_spec(spec, settings, target.path)), make_subfolder(folder, name)),
-                      Role::calibration);
+      return tests_of(
+          simulate(chain::rounds_of(chain::planned_spec(spec, settings, target.path)), make_subfolder(folder, name)),
+          Role::calibration);
     };
     return findings_of(target, {pilot, spec.preparation.drive.strain_rate}, known, tests_of(dataset, Role::calibration),
                        coarser("faster", faster(pilot)), coarser("smaller", smaller(pilot)), rates);
@@ -151,15 +155,15 @@ ExitCode calibrate_for(const chain::PrecisionTarget& target, const dem::Spec& sp
   };
   actions.seconds = [&] { return session.stopwatch.seconds(); };
   actions.log = [&](const std::string& text) { session.watch.log(text); };
-  const chain::TargetRun run = reach(target, pilot, chain::plan_grid(pilot, spec.preparation.drive.strain_rate), actions);
+  const chain::TargetRun run =
+      reach(target, pilot, chain::plan_grid(pilot, spec.preparation.drive.strain_rate), actions);
 
   const dem::Spec planned = chain::planned_spec(spec, run.rounds.back().settings, target.path);
   if (chain::rounds_of(planned).tests.size() < planned.tests.size()) {
     session.watch.log("tests of other roles, of which the plan knew nothing");
     calibrate_with(planned, dataset, fit_seconds);
   }
-  const OrderedJson document = chain::plan_to_json(run, target, overrides(spec, planned),
-                                            provenance(session));
+  const OrderedJson document = chain::plan_to_json(run, target, overrides(spec, planned), provenance(session));
   write_json(options.output / "plan.json", document);
   print_result(session.json ? json_text(document) : table_of(run, target, planned, options.output));
   return run.outcome == chain::TargetOutcome::met ? ExitCode::ok : ExitCode::not_converged;

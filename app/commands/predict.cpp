@@ -7,14 +7,14 @@
 #include <set>
 #include <utility>
 
-#include "model/files/digest.hpp"
-#include "chain/parameters_file.hpp"
-#include "model/files/path_file.hpp"
-#include "model/files/output_folder.hpp"
-#include "model/files/adopted_dataset.hpp"
+#include "model/parameters_file.hpp"
 #include "dem/runs/new_packings.hpp"
-#include "chain/uncertainty.hpp"
+#include "model/files/adopted_dataset.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/files/path_file.hpp"
 #include "model/vocabulary/error.hpp"
+#include "predict/bands.hpp"
 #include "predict/mixed_control.hpp"
 #include "predict/rung_advice.hpp"
 
@@ -26,10 +26,10 @@ namespace fs = std::filesystem;
 constexpr int kPointsPerSegment = 200;  // of a curve that no DEM run dictates
 
 /// The rung that is asked for, else reduced, evolution, and memory where it is calibrated.
-std::vector<Rung> rungs_of(const PredictOptions& options, const chain::ParametersFile& parameters, const Path& path) {
+std::vector<Rung> rungs_of(const PredictOptions& options, const CalibratedLaw& law, const Path& path) {
   if (options.model) return {*options.model};
   std::vector<Rung> rungs{Rung::reduced, Rung::evolution};
-  if (fit::has_values(parameters.calibration, "memory")) rungs.push_back(Rung::memory);
+  if (has_values(law, "memory")) rungs.push_back(Rung::memory);
   if (law_decides(path)) rungs.erase(rungs.begin());  // a closed form of the strain
   return rungs;
 }
@@ -42,39 +42,34 @@ std::vector<predict::Initial> initials_of(const PredictOptions& options) {
 
 /// The law with everything that a curve needs besides its start and its points.
 struct Law {
-  const fit::Calibration& calibration;
+  const CalibratedLaw& calibrated;
   std::vector<Rung> rungs;
   const Path& path;
   std::vector<StraightSegment> segments;  ///< none where the law decides where the path leads
-  predict::Uncertainty uncertainty;
-  predict::ValidRange range;
   RunControl control;
 
   /// With bands, which take the start's error in where the law makes it.
   predict::Prediction along(Rung model, predict::Initial initial, const LawState<double>& start,
                             const std::vector<predict::OutputPoint>& points) const {
-    predict::Prediction prediction =
-        predict::predict(model, calibration.parameters, calibration.coupling, segments, start, points,
-                         predict::Tolerances{}, range, control, {uncertainty.parameters, initial == predict::Initial::law});
-    predict::add_bands(calibration.parameters, uncertainty, prediction);
-    return prediction;
+    return predict::predict_with_bands(model, calibrated, segments, start, initial == predict::Initial::law, points,
+                                       control);
   }
 
   /// From the law's own start.
   predict::Prediction at_equal_steps(Rung model) const {
-    const LawState<double> start = predict::state_from_law(calibration.parameters, path.nu);
+    const LawState<double> start = predict::state_from_law(calibrated.parameters, path.nu);
     if (!law_decides(path))
       return along(model, predict::Initial::law, start, predict::uniform_points(segments, kPointsPerSegment));
-    return predict::predict_by_law(model, calibration.parameters, calibration.coupling, path, start, kPointsPerSegment,
-                                   predict::Tolerances{}, range, control);
+    return predict::predict_by_law(model, calibrated.parameters, calibrated.coupling, path, start, kPointsPerSegment,
+                                   predict::Tolerances{}, calibrated.range, control);
   }
 };
 
 /// Curves at equal steps, from the law's own start.
 void add_free_curves(const Law& law, predict::PredictionFolder& content) {
   for (const Rung model : law.rungs) {
-    content.curves.push_back(
-        {model, predict::Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), law.at_equal_steps(model)});
+    content.curves.push_back({model, predict::Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)),
+                              law.at_equal_steps(model)});
   }
 }
 
@@ -86,17 +81,18 @@ void add_compared_curves(const Law& law, const PredictOptions& options, predict:
     for (const Rung model : law.rungs) {
       for (const predict::Initial initial : initials_of(options)) {
         const auto start = initial == predict::Initial::law
-                               ? predict::state_from_law(law.calibration.parameters, content.path.nu)
+                               ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
                                : predict::state_from_row(test.record.rows.front());
         predict::PredictedCurve curve{model, initial, seed,
-                             fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
-                             law.along(model, initial, start, points)};
+                                      fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
+                                      law.along(model, initial, start, points)};
         content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
         content.curves.push_back(std::move(curve));
       }
     }
   }
-  for (const predict::CurveComparison& mean : predict::mean_over_seeds(content.comparisons)) content.comparisons.push_back(mean);
+  for (const predict::CurveComparison& mean : predict::mean_over_seeds(content.comparisons))
+    content.comparisons.push_back(mean);
 }
 
 /// The runs of the path on new packings.
@@ -108,8 +104,8 @@ Dataset run_dem(const PredictOptions& options, const dem::Spec& spec, const Path
                                                                  : fs::path(".");
   make_output_folder(parent);
   dem::RunCounts counts;
-  return dem::run_planned(tests, Json(dem::spec_to_json(spec)), make_subfolder(options.output, "dem"), dem::RunStore(parent, "runs"),
-                     session, counts);
+  return dem::run_planned(tests, Json(dem::spec_to_json(spec)), make_subfolder(options.output, "dem"),
+                          dem::RunStore(parent, "runs"), session, counts);
 }
 
 dem::Spec spec_beside(const PredictOptions& options) {
@@ -145,7 +141,7 @@ void add_advice(const Law& law, predict::PredictionFolder& content) {
     content.needed = {Rung::evolution, "the law decides the strain"};
     return;
   }
-  content.needed = predict::rung_needed(law.calibration.parameters, law.segments);
+  content.needed = predict::rung_needed(law.calibrated.parameters, law.segments);
   const predict::PredictedCurve* cheaper = nullptr;
   for (const predict::PredictedCurve& curve : content.curves) {
     if (curve.seed) continue;
@@ -218,25 +214,22 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   if (options.initial == predict::Initial::measured && !options.dem && options.against.empty()) {
     throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem or --against too");
   }
-  const chain::ParametersFile parameters = chain::read_parameters(options.parameters);
+  const CalibratedLaw calibrated = read_parameters(options.parameters).law;
   const PathFile path = read_path(options.path);
-  const std::vector<Rung> rungs = rungs_of(options, parameters, path.path);
+  const std::vector<Rung> rungs = rungs_of(options, calibrated, path.path);
   if (law_decides(path.path) && rungs.front() == Rung::reduced) {
     throw InvalidInput(
         fmt::format("{}: segments: leave the strain to the law; the reduced one is a closed form of the strain, give "
                     "--model evolution",
                     options.path.string()));
   }
-  for (const Rung model : rungs) chain::require_parameters(parameters, model, options.parameters.string());
-  const fit::Calibration& calibration = parameters.calibration;
-  const Law law{calibration,
+  for (const Rung model : rungs) require_parameters(calibrated, model, options.parameters.string());
+  const Law law{calibrated,
                 rungs,
                 path.path,
                 law_decides(path.path) ? std::vector<StraightSegment>{} : resolve(path.path),
-                chain::uncertainty_of(calibration),
-                {calibration.nu_min, calibration.nu_max, calibration.eps_dev_max},
                 {{}, session.stop}};
-  predict::state_from_law(calibration.parameters,
+  predict::state_from_law(calibrated.parameters,
                           path.path.nu);  // refuses a start below jamming before anything is written
   std::optional<dem::Spec> spec;
   if (options.dem) {
@@ -258,18 +251,18 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   content.path = path.path;
   content.parameters = {{"file", options.parameters.string()},
                         {"sha256", sha256_of_file(options.parameters)},
-                        {"dataset_digest", parameters.dataset_digest}};
+                        {"dataset_digest", calibrated.dataset_digest}};
   if (options.dem) content.dem = run_dem(options, *spec, path, session);
   if (finished) content.dem = adopt(*finished, from, make_subfolder(options.output, "dem"));
   if (options.initial != predict::Initial::measured) add_free_curves(law, content);
   if (content.dem) add_compared_curves(law, options, content);
   add_advice(law, content);
-  content.bands = law_decides(path.path) ? "none: the law decides the strain" : chain::text_of(law.uncertainty);
+  content.bands = law_decides(path.path) ? "none: the law decides the strain" : available_bands(calibrated);
   content.provenance = Json(provenance(session));
   predict::write_prediction(options.output, content);
 
   std::set<std::string> warned;
-  if (!calibration.converged) session.watch.log("warning: the calibration did not converge");
+  if (!calibrated.converged) session.watch.log("warning: the calibration did not converge");
   for (const predict::PredictedCurve& curve : content.curves) {
     for (const std::string& warning : curve.prediction.warnings) {
       if (warned.insert(warning).second) session.watch.log("warning: " + warning);

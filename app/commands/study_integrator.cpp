@@ -5,13 +5,13 @@
 #include <chrono>
 #include <cmath>
 
-#include "chain/parameters_file.hpp"
-#include "model/files/output_folder.hpp"
 #include "app/commands/study_output.hpp"
-#include "predict/studies/work_precision.hpp"
+#include "model/parameters_file.hpp"
+#include "model/files/output_folder.hpp"
 #include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 #include "predict/studies/batch.hpp"
+#include "predict/studies/work_precision.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -39,9 +39,9 @@ StudiedLaw law_of(const StudyIntegratorOptions& options) {
     law.parameters.anisotropy.a2 = kMeasuredA2;
     return law;
   }
-  const chain::ParametersFile file = chain::read_parameters(options.parameters);
-  chain::require_parameters(file, Rung::evolution, options.parameters.string());
-  return {file.calibration.parameters, file.calibration.coupling, options.parameters.string()};
+  const ParametersFile file = read_parameters(options.parameters);
+  require_parameters(file.law, Rung::evolution, options.parameters.string());
+  return {file.law.parameters, file.law.coupling, options.parameters.string()};
 }
 
 /// UNI to nu = .82 from `count` densities in [.68, .74].
@@ -62,7 +62,8 @@ std::vector<BatchTime> time_batch(const StudiedLaw& law, const predict::WorkPrec
   const auto paths = batch_paths(law.parameters, options.paths);
   std::vector<BatchTime> times;
   const Integrator adams = Integrator::adams;
-  for (const predict::WorkPoint* point : {predict::quickest(smooth, kWantedError, &adams), predict::quickest(smooth, kWantedError)}) {
+  for (const predict::WorkPoint* point :
+       {predict::quickest(smooth, kWantedError, &adams), predict::quickest(smooth, kWantedError)}) {
     if (!point) continue;
     const auto before = std::chrono::steady_clock::now();
     predict::walk_batch(paths, point->integrator, point->accuracy, law.parameters, Rung::evolution, law.coupling,
@@ -191,8 +192,8 @@ ExitCode study_integrator(const StudyIntegratorOptions& options, Session& sessio
   std::vector<predict::WorkPrecision> studies;
   for (const predict::StudyPath& path : predict::study_paths(law.parameters)) {
     session.watch.log("study of " + path.name);
-    studies.push_back(
-        predict::measure_work(path, law.parameters, Rung::evolution, law.coupling, options.repeats, {{}, session.stop}));
+    studies.push_back(predict::measure_work(path, law.parameters, Rung::evolution, law.coupling, options.repeats,
+                                            {{}, session.stop}));
   }
   const std::vector<BatchTime> times = time_batch(law, studies.front(), options, session);
 

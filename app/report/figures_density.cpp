@@ -25,11 +25,11 @@ void add_state_curves(Panel& panel, const ReportInput& input, double from, doubl
   };
   const auto known = [&](const std::string& prefix) {
     return std::all_of(groups.begin(), groups.end(),
-                       [&](const char* group) { return fit::has_values(input.calibration, prefix + group); });
+                       [&](const char* group) { return has_values(input.calibration.law, prefix + group); });
   };
   add("ISO, published", published.isotropic, Colour::ink, Line::dashed);
   add("steady D2, published", published.steady, Colour::purple, Line::dashed);
-  const LawParameters<double>& ours = input.calibration.parameters;
+  const LawParameters<double>& ours = input.calibration.law.parameters;
   if (known("")) add("ISO, fitted", ours.isotropic, Colour::blue, Line::solid);
   if (known("steady_")) add("steady D2, fitted", ours.steady, Colour::vermillion, Line::solid);
 }
@@ -74,9 +74,9 @@ struct Range {
 /// From a little below jamming, where the laws begin, to the densest row.
 Range shown_range(const ReportInput& input) {
   const auto& c = input.calibration;
-  double from = c.parameters.isotropic.pressure.nu_c;
-  if (fit::has_values(c, "steady_pressure")) from = std::min(from, c.parameters.steady.pressure.nu_c);
-  return {std::min(from, c.nu_max - 0.01), c.nu_max};
+  double from = c.law.parameters.isotropic.pressure.nu_c;
+  if (has_values(c.law, "steady_pressure")) from = std::min(from, c.law.parameters.steady.pressure.nu_c);
+  return {std::min(from, c.law.range.nu_max - 0.01), c.law.range.nu_max};
 }
 
 Panel density_panel(const char* label, const Range& range) {
@@ -134,7 +134,7 @@ Figure density_figure(const ReportInput& input) {
 
 Figure scaled_density_figure(const ReportInput& input) {
   const Range range = shown_range(input);
-  const LawParameters<double>& ours = input.calibration.parameters;
+  const LawParameters<double>& ours = input.calibration.law.parameters;
   const LawParameters<double> published = published_parameters();
   const auto seeds = seeds_of(input.tests);
   Figure figure;
@@ -169,20 +169,20 @@ Figure scaled_density_figure(const ReportInput& input) {
     for (std::size_t i = 0; i < series.y.size(); ++i) series.y[i] *= ours.isotropic.pressure.nu_c / (C.x[i] * C.y[i]);
     scaled.series.push_back(series);
   }
-  add_curves(scaled, fit::has_values(input.calibration, "pressure"),
+  add_curves(scaled, has_values(input.calibration.law, "pressure"),
              [](const auto& p, double nu) { return p.isotropic.pressure.scaled(nu); });
 
   Panel overlap = density_panel("mean overlap ⟨δ⟩/⟨{r}⟩ [–]", range);
   overlap.y.include = 0;
   add_isotropic_symbols(overlap, input, &Observation::mean_overlap);
-  add_curves(overlap, fit::has_values(input.calibration, "overlap"), [](const auto& p, double nu) {
+  add_curves(overlap, has_values(input.calibration.law, "overlap"), [](const auto& p, double nu) {
     return nu > p.isotropic.pressure.nu_c ? p.overlap_D * std::log(nu / p.isotropic.pressure.nu_c) : 0.0;
   });
 
   Panel trace = density_panel("fabric trace {F}_{v} [–]", range);
   trace.y.from = 2.5;
   add_isotropic_symbols(trace, input, &Observation::F_v);
-  add_curves(trace, fit::has_values(input.calibration, "fabric"),
+  add_curves(trace, has_values(input.calibration.law, "fabric"),
              [](const auto& p, double nu) { return p.fabric_g3 * nu * p.isotropic.C(nu); });
 
   for (Panel* panel : {&overlap, &trace}) {

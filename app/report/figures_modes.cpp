@@ -58,8 +58,7 @@ const fit::Calibration* description_of(const ReportInput& input, const char* nam
 std::optional<double> jamming_density(const fit::Calibration& mode) {
   for (const fit::Stage& stage : mode.stages) {
     for (const fit::NamedEstimate& named : stage.estimates) {
-      if (named.name == "pressure.nu_c" && named.estimate.status != fit::Status::not_identified)
-        return named.estimate.value;
+      if (named.name == "pressure.nu_c" && named.estimate.status != Status::not_identified) return named.estimate.value;
     }
   }
   return std::nullopt;
@@ -143,13 +142,13 @@ Panel scaled_panel(const ReportInput& input) {
                                  [&](double x) { return pressure.scaled(pressure.nu_c * std::exp(x)); }));
   };
   const auto& ours = input.calibration;
-  if (fit::has_values(ours, "pressure"))
-    add_runs("ISO", ours.parameters.isotropic.pressure.nu_c, Colour::blue, is_isotropic_unloading);
+  if (has_values(ours.law, "pressure"))
+    add_runs("ISO", ours.law.parameters.isotropic.pressure.nu_c, Colour::blue, is_isotropic_unloading);
   const fit::Calibration* uniaxial = description_of(input, "UNI");
   const auto uniaxial_nu_c = uniaxial != nullptr ? jamming_density(*uniaxial) : std::nullopt;
   if (uniaxial_nu_c) add_runs("UNI", *uniaxial_nu_c, Colour::green, is_uniaxial_cycle);
-  if (fit::has_values(ours, "steady_pressure")) {
-    const double nu_c = ours.parameters.steady.pressure.nu_c;
+  if (has_values(ours.law, "steady_pressure")) {
+    const double nu_c = ours.law.parameters.steady.pressure.nu_c;
     Series steady;
     steady.label = plain("steady D2, DEM (mean per run)");
     steady.colour = Colour::vermillion;

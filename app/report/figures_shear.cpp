@@ -21,8 +21,8 @@ struct Saturation {
   const char* equation;
   std::array<const char*, 2> groups;  ///< of parameters that `law` reads
   Quantity measured;
-  fit::Estimate fit::ShearFit::*limit;
-  fit::Estimate fit::ShearFit::*rate;
+  Estimate fit::ShearFit::*limit;
+  Estimate fit::ShearFit::*rate;
   double fit::ShearFit::*start;
   double (*law)(const LawParameters<double>&, double nu, double eps_dev);
 };
@@ -83,8 +83,8 @@ void add_run(Panel& panel, const TestRecord& test, const ReportInput& input, con
   const auto found =
       std::find_if(fits.begin(), fits.end(), [&](const fit::ShearFit& f) { return f.test == test.name; });
   if (found == fits.end()) return;
-  if (((*found).*what.limit).status == fit::Status::not_identified ||
-      ((*found).*what.rate).status == fit::Status::not_identified) {
+  if (((*found).*what.limit).status == Status::not_identified ||
+      ((*found).*what.rate).status == Status::not_identified) {
     return;
   }
   const double limit = ((*found).*what.limit).value, rate = ((*found).*what.rate).value, start = (*found).*what.start;
@@ -127,9 +127,9 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
       add_run(panel, *test, input, what, index_of(seeds, test->packing.seed));
       end = std::max(end, largest_strain(*test));
     }
-    if (fit::has_values(input.calibration, what.groups[0]) && fit::has_values(input.calibration, what.groups[1])) {
+    if (has_values(input.calibration.law, what.groups[0]) && has_values(input.calibration.law, what.groups[1])) {
       panel.series.push_back(curve(plain("law, final parameters"), Colour::ink, Line::dotted, 0, end,
-                                   [&](double e) { return what.law(input.calibration.parameters, key.nu, e); }));
+                                   [&](double e) { return what.law(input.calibration.law.parameters, key.nu, e); }));
     }
     panel.series.push_back(curve(plain("published"), Colour::ink, Line::dashed, 0, end,
                                  [&](double e) { return what.law(published, key.nu, e); }));

@@ -14,7 +14,7 @@ namespace {
 struct Quantity20 {
   const char* label;
   const char* group;  ///< of its parameters
-  fit::Estimate fit::ShearFit::*staged;
+  Estimate fit::ShearFit::*staged;
   double fit::ShearFit::*steady_mean;  ///< null for rates
   ExponentialLaw<double> LawParameters<double>::*law;
   double LawModuli<double>::*limit;  ///< null for rates
@@ -22,12 +22,12 @@ struct Quantity20 {
 
 /// The parameters before the coupled fit: the last value that a stage in front of it gave.
 LawParameters<double> staged_parameters(const fit::Calibration& calibration) {
-  LawParameters<double> staged = calibration.parameters;
+  LawParameters<double> staged = calibration.law.parameters;
   const auto to = fields(staged);
   for (const fit::Stage& stage : calibration.stages) {
     if (stage.name == "evolution") break;
     for (const fit::NamedEstimate& named : stage.estimates) {
-      if (named.estimate.status != fit::Status::not_identified) *to[parameter_index(named.name)] = named.estimate.value;
+      if (named.estimate.status != Status::not_identified) *to[parameter_index(named.name)] = named.estimate.value;
     }
   }
   return staged;
@@ -41,8 +41,8 @@ Series per_run_points(const ReportInput& input, Mode mode, const Quantity20& qua
   series.open_marker = true;
   for (const fit::ShearFit& shear : input.calibration.shear) {
     if (shear.mode != mode) continue;
-    const fit::Estimate& estimate = shear.*quantity.staged;
-    const bool known = estimate.status != fit::Status::not_identified;
+    const Estimate& estimate = shear.*quantity.staged;
+    const bool known = estimate.status != Status::not_identified;
     series.x.push_back(shear.nu);
     series.y.push_back(known ? estimate.value : std::numeric_limits<double>::quiet_NaN());
     series.y_error.push_back(estimate.standard_error);
@@ -91,14 +91,14 @@ Figure shear_law_figure(const ReportInput& input) {
 
   const auto& calibration = input.calibration;
   const P published = published_parameters(), staged = staged_parameters(calibration);
-  double from = calibration.nu_max, to = calibration.nu_min;
+  double from = calibration.law.range.nu_max, to = calibration.law.range.nu_min;
   for (const fit::ShearFit& shear : calibration.shear) {
     from = std::min(from, shear.nu);
     to = std::max(to, shear.nu);
   }
   if (!(from < to)) {
-    from = calibration.nu_min;
-    to = calibration.nu_max;
+    from = calibration.law.range.nu_min;
+    to = calibration.law.range.nu_max;
   }
   const LawDirection D3 = law_direction(direction_of(Mode::D3, "xyz", false));
   const bool sheared_by_D3 = std::any_of(calibration.shear.begin(), calibration.shear.end(),
@@ -119,15 +119,15 @@ Figure shear_law_figure(const ReportInput& input) {
           curve(plain(label), colour, line, from, to, [&](double nu) { return law.value(nu, parameters.shear_nu_c); }));
     };
     add("published", published, Colour::ink, Line::dashed);
-    if (!fit::has_values(calibration, quantity.group)) {
+    if (!has_values(calibration.law, quantity.group)) {
       panel.title = plain("Eq. 20 not identified by these tests");
       figure.panels.push_back(panel);
       continue;
     }
     add("Eq. 20, staged", staged, Colour::blue, Line::dotted);
-    add("Eq. 20, final", calibration.parameters, Colour::vermillion, Line::solid);
+    add("Eq. 20, final", calibration.law.parameters, Colour::vermillion, Line::solid);
     if (quantity.limit != nullptr && sheared_by_D3) {
-      const P& p = calibration.parameters;
+      const P& p = calibration.law.parameters;
       panel.series.push_back(curve(plain("final, D3"), Colour::green, Line::solid, from, to,
                                    [&](double nu) { return along(moduli_at(p, nu), p.lode, D3).*quantity.limit; }));
     }

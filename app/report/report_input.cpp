@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "fit/calibration_file.hpp"
 #include "model/files/digest.hpp"
-#include "app/files/calibration_file.hpp"
-#include "chain/parameters_file.hpp"
+#include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app::report {
@@ -46,10 +46,9 @@ std::vector<fs::path> prediction_folders(const fs::path& dir) {
 }
 
 /// No prediction is an error, unless the parameters allow none: then the page is what shows why.
-void check_predictions(const chain::ParametersFile& parameters, const fs::path& dir, const std::string& command,
-                       ReportInput& input) {
+void check_predictions(const CalibratedLaw& law, const fs::path& dir, const std::string& command, ReportInput& input) {
   try {
-    chain::require_parameters(parameters, Rung::reduced, "parameters.json");
+    require_parameters(law, Rung::reduced, "parameters.json");
   } catch (const InvalidInput& error) {
     input.warnings.push_back(std::string("No prediction can be made: ") + error.what());
     return;
@@ -83,14 +82,15 @@ ReportInput read_report_input(const fs::path& dir) {
                                                (dir / "parameters.json").string(), (dir / "predictions").string());
 
   ReportInput input;
-  chain::ParametersFile parameters = with_remedy(calibrate, [&] { return chain::read_parameters(dir / "parameters.json"); });
-  input.calibration = parameters.calibration;
-  with_remedy(calibrate, [&] { input.modes = read_calibration(dir / "calibration.json", input.calibration); });
-  add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.dataset_digest, input);
+  ParametersFile parameters = with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); });
+  input.calibration.law = parameters.law;
+  with_remedy(calibrate, [&] { input.modes = fit::read_calibration(dir / "calibration.json", input.calibration); });
+  add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.law.dataset_digest,
+              input);
   add_facts(parameters.provenance, "", "parameters.json", input.provenance);
 
   const std::vector<fs::path> folders = prediction_folders(dir);
-  if (folders.empty()) check_predictions(parameters, dir, predict_into + "NAME", input);
+  if (folders.empty()) check_predictions(parameters.law, dir, predict_into + "NAME", input);
   const std::string digest = sha256_of_file(dir / "parameters.json");
   for (const fs::path& folder : folders) {
     const std::string name = folder.filename().string();
@@ -113,10 +113,10 @@ ReportInput read_report_input(const fs::path& dir) {
   return input;
 }
 
-fit::Calibration read_fitted_parameters(const fs::path& dir) {
+CalibratedLaw read_fitted_parameters(const fs::path& dir) {
   const std::string calibrate = calibrate_command(dir);
   require_file(dir / "parameters.json", calibrate);
-  return with_remedy(calibrate, [&] { return chain::read_parameters(dir / "parameters.json"); }).calibration;
+  return with_remedy(calibrate, [&] { return read_parameters(dir / "parameters.json"); }).law;
 }
 
 std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction) {

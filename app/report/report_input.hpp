@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
-#include "predict/prediction_files.hpp"
-#include "app/published/verdicts.hpp"
 #include "fit/calibrate.hpp"
+#include "fit/published/verdicts.hpp"
 #include "model/vocabulary/test_record.hpp"
+#include "predict/prediction_files.hpp"
 
 namespace grainlaw::app::report {
 
@@ -23,19 +23,19 @@ struct ReportInput {
   std::vector<TestRecord> tests;  ///< data set, calibration and validation
   std::vector<RunCost> costs;     ///< of the tests, in their order
   fit::Calibration calibration;
-  ModeComparison modes;                       ///< beside what was published
+  fit::ModeComparison modes;                           ///< beside what was published
   std::vector<predict::PredictionFolder> predictions;  ///< by name
-  std::vector<Fact> provenance;               ///< commands, versions, seconds
-  std::vector<Fact> spec;                     ///< of the data set, resolved; empty when unknown
-  std::vector<std::string> warnings;          ///< files that do not belong together
-  std::vector<std::string> run_warnings;      ///< "test: warning" of the DEM runs
+  std::vector<Fact> provenance;                        ///< commands, versions, seconds
+  std::vector<Fact> spec;                              ///< of the data set, resolved; empty when unknown
+  std::vector<std::string> warnings;                   ///< files that do not belong together
+  std::vector<std::string> run_warnings;               ///< "test: warning" of the DEM runs
 };
 
 /// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it.
 ReportInput read_report_input(const std::filesystem::path& dir);
 
 /// parameters.json alone, as far as the table of parameters goes. Throws likewise.
-fit::Calibration read_fitted_parameters(const std::filesystem::path& dir);
+CalibratedLaw read_fitted_parameters(const std::filesystem::path& dir);
 
 /// The DEM runs of a prediction; empty when it was made without --dem.
 std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction);

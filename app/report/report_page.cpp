@@ -35,9 +35,9 @@ std::vector<std::string> lead(const ReportInput& input) {
       "In every figure symbols (or thin lines, where said) are DEM data, solid and dotted lines the law, dashed "
       "lines the published law. Stress is positive in compression, strain in tension; a star means multiplied by "
       "2⟨r⟩/k. Calibrated range: ν = {:.4g} to {:.4g}, deviatoric strain up to {:.3g}.",
-      calibration.nu_min, calibration.nu_max, calibration.eps_dev_max);
+      calibration.law.range.nu_min, calibration.law.range.nu_max, calibration.law.range.eps_dev_max);
   std::vector<std::string> blocks{paragraph_html(plain(text)), paragraph_html(plain(reading))};
-  if (!calibration.converged) {
+  if (!calibration.law.converged) {
     std::string stages;
     for (const fit::Stage& stage : calibration.stages) {
       if (!stage.converged) stages += (stages.empty() ? "" : ", ") + stage.name;
@@ -123,12 +123,12 @@ Page make_page(const ReportInput& input) {
   page.sections.push_back(
       {"parameters",
        "Parameters and curves",
-       {table_html(parameter_comparison(calibration)),
+       {table_html(parameter_comparison(calibration.law)),
         paragraph_html(
             plain("Parameters of Eqs. 11, 12 and 14 depend on each other: equal curves come from quite different "
                   "values. The curves are what should be compared.")),
-        table_html(curve_comparison(calibration, CurveGroup::law)) +
-            table_html(curve_comparison(calibration, CurveGroup::steady_state))}});
+        table_html(curve_comparison(calibration.law, CurveGroup::law)) +
+            table_html(curve_comparison(calibration.law, CurveGroup::steady_state))}});
   if (!input.modes.verdicts.empty()) {
     page.sections.push_back(
         {"published",

@@ -9,16 +9,16 @@
 namespace grainlaw::app::report {
 
 /// Every parameter: meaning, symbol, equation, ours +- one standard error, 95 % interval, published, relative difference.
-Table parameter_comparison(const fit::Calibration& calibration);
+Table parameter_comparison(const CalibratedLaw& law);
 /// What the parameters mean: C*, phi_r, P*, s_max, beta_s, F_max, beta_F at round densities of the calibrated range.
 enum class CurveGroup { law, steady_state };
-Table curve_comparison(const fit::Calibration& calibration, CurveGroup which);
+Table curve_comparison(const CalibratedLaw& law, CurveGroup which);
 /// Every verdict on a parameter, or on a curve, mode by mode.
-Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters);
+Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameters);
 /// What the paper says beyond Tables 2 and 3.
-Table claim_table(const std::vector<Claim>& claims);
+Table claim_table(const std::vector<fit::Claim>& claims);
 /// nu_c of the modes, both ways.
-Table jamming_table(const std::vector<Verdict>& verdicts);
+Table jamming_table(const std::vector<fit::Verdict>& verdicts);
 /// Stages of the fit: window, sizes, costs, termination.
 Table stage_table(const fit::Calibration& calibration);
 /// Misfit of the coupled fit per test and quantity.
@@ -44,9 +44,9 @@ Table provenance_table(const ReportInput& input);
 Table spec_table(const ReportInput& input);
 
 /// The value of an estimate with its error, or its status in words.
-std::string estimate_text(const fit::Estimate& estimate);
+std::string estimate_text(const Estimate& estimate);
 
 /// Fixed-width text of parameter_comparison's first columns, for a terminal.
-std::string parameter_summary(const fit::Calibration& calibration);
+std::string parameter_summary(const CalibratedLaw& law);
 
 }  // namespace grainlaw::app::report

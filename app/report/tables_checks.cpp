@@ -17,7 +17,7 @@ Table left_out_table(const fit::Calibration& calibration) {
                    quantity(plain("largest shift")),   quantity(plain("without seed")),
                    quantity(plain("jackknife error")), quantity(plain("jackknife/stated"))};
   for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const fit::Estimate& estimate = calibration.estimates[i];
+    const Estimate& estimate = calibration.law.estimates[i];
     const fit::LeftOut* furthest = fit::furthest(calibration.left_out, i, estimate.value);
     if (!std::isfinite(estimate.standard_error) || furthest == nullptr) continue;
     const double jackknife = fit::jackknife_error(calibration.left_out, i);

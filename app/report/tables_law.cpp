@@ -13,17 +13,17 @@
 namespace grainlaw::app::report {
 namespace {
 
-std::string status_words(fit::Status status) {
+std::string status_words(Status status) {
   switch (status) {
-    case fit::Status::fitted:
+    case Status::fitted:
       return "fitted";
-    case fit::Status::fixed:
+    case Status::fixed:
       return "fixed";
-    case fit::Status::tied:
+    case Status::tied:
       return "tied";
-    case fit::Status::at_bound:
+    case Status::at_bound:
       return "at bound";
-    case fit::Status::not_identified:
+    case Status::not_identified:
       break;
   }
   return "not identified";
@@ -36,14 +36,14 @@ Text equation_text(const std::string& equation) {
 
 }  // namespace
 
-std::string estimate_text(const fit::Estimate& estimate) {
-  if (estimate.status == fit::Status::not_identified) return "not identified";
+std::string estimate_text(const Estimate& estimate) {
+  if (estimate.status == Status::not_identified) return "not identified";
   const std::string value = with_error(estimate.value, estimate.standard_error);
-  if (estimate.status == fit::Status::fitted) return value;
+  if (estimate.status == Status::fitted) return value;
   return value + " (" + status_words(estimate.status) + ")";
 }
 
-Table parameter_comparison(const fit::Calibration& calibration) {
+Table parameter_comparison(const CalibratedLaw& law) {
   Table table;
   table.caption = "Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)";
   table.source = "parameters.json";
@@ -57,8 +57,8 @@ Table parameter_comparison(const fit::Calibration& calibration) {
                    words(plain("note"))};
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const ParameterInfo& info = parameter_table()[i];
-    const fit::Estimate& estimate = calibration.estimates[i];
-    const bool known = estimate.status != fit::Status::not_identified;
+    const Estimate& estimate = law.estimates[i];
+    const bool known = estimate.status != Status::not_identified;
     const double published = info.published.value_or(kUndefined);
     table.rows.push_back(
         {plain(info.name), paper_symbol(info.symbol), equation_text(info.equation), plain(estimate_text(estimate)),
@@ -68,7 +68,7 @@ Table parameter_comparison(const fit::Calibration& calibration) {
   return table;
 }
 
-Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
+Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
   const auto shown = [&](const DensityCurve& curve) {
     return std::string_view(curve.quantity).starts_with("steady_") == (which == CurveGroup::steady_state);
   };
@@ -80,10 +80,9 @@ Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
   table.columns = {quantity(notation("{ν}"))};
   std::map<double, std::vector<Text>> rows;
   for (const CurvePoint& point :
-       curve_points(calibration.parameters, published_parameters(), calibration.nu_min, calibration.nu_max)) {
+       curve_points(law.parameters, published_parameters(), law.range.nu_min, law.range.nu_max)) {
     if (!shown(*point.curve)) continue;
-    const bool known = std::all_of(point.curve->groups.begin(), point.curve->groups.end(),
-                                   [&](const char* group) { return fit::has_values(calibration, group); });
+    const bool known = has_values(law, *point.curve);
     std::vector<Text>& row = rows[point.nu];
     if (row.empty()) row.push_back(plain(fixed(point.nu, 2)));
     row.push_back(
@@ -97,14 +96,14 @@ Table curve_comparison(const fit::Calibration& calibration, CurveGroup which) {
   return table;
 }
 
-std::string parameter_summary(const fit::Calibration& calibration) {
+std::string parameter_summary(const CalibratedLaw& law) {
   std::string text = fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", "parameter", "symbol", "ours ± standard error",
                                  "95 % interval", "published");
   text += std::string(104, '-') + "\n";
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const ParameterInfo& info = parameter_table()[i];
     const std::string published = info.published ? significant(*info.published, 5) : kNoNumber;
-    const fit::Estimate& estimate = calibration.estimates[i];
+    const Estimate& estimate = law.estimates[i];
     text += fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", info.name, info.symbol, estimate_text(estimate),
                         interval_text(estimate.value, estimate.half_width()), published);
   }

@@ -10,14 +10,14 @@
 namespace grainlaw::app::report {
 namespace {
 
-std::size_t count(const std::vector<Verdict>& verdicts, bool of_parameters, const std::string& verdict) {
-  return static_cast<std::size_t>(std::count_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
+std::size_t count(const std::vector<fit::Verdict>& verdicts, bool of_parameters, const std::string& verdict) {
+  return static_cast<std::size_t>(std::count_if(verdicts.begin(), verdicts.end(), [&](const fit::Verdict& v) {
     return v.is_parameter == of_parameters && v.verdict == verdict;
   }));
 }
 
 /// The paper's symbol of a parameter or curve; its name where there is none.
-Text symbol_of(const Verdict& v) {
+Text symbol_of(const fit::Verdict& v) {
   if (v.is_parameter) return paper_symbol(parameter_table()[parameter_index(v.quantity)].symbol);
   for (const DensityCurve& curve : density_curves()) {
     if (curve.quantity == v.quantity) return notation(curve.symbol);
@@ -27,7 +27,7 @@ Text symbol_of(const Verdict& v) {
 
 }  // namespace
 
-Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters) {
+Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameters) {
   Table table;
   table.caption = fmt::format(
       "{} against the published: {} agree, {} differ, {} have no error. Distance: difference over the standard error "
@@ -40,7 +40,7 @@ Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters) {
   for (const char* heading : {"ours ± standard error", "published", "distance"})
     table.columns.push_back(quantity(plain(heading)));
   table.columns.push_back(words(plain("verdict")));
-  for (const Verdict& v : verdicts) {
+  for (const fit::Verdict& v : verdicts) {
     if (v.is_parameter != of_parameters) continue;
     std::vector<Text> row{plain(v.mode), plain(v.quantity), symbol_of(v)};
     if (!of_parameters) row.push_back(plain(fixed(v.nu, 2)));
@@ -53,9 +53,9 @@ Table verdict_table(const std::vector<Verdict>& verdicts, bool of_parameters) {
   return table;
 }
 
-Table claim_table(const std::vector<Claim>& claims) {
+Table claim_table(const std::vector<fit::Claim>& claims) {
   const auto number_of = [&](const char* verdict) {
-    return std::count_if(claims.begin(), claims.end(), [&](const Claim& c) { return c.verdict == verdict; });
+    return std::count_if(claims.begin(), claims.end(), [&](const fit::Claim& c) { return c.verdict == verdict; });
   };
   Table table;
   table.caption = fmt::format(
@@ -66,7 +66,7 @@ Table claim_table(const std::vector<Claim>& claims) {
   table.columns = {words(plain("where")),        words(plain("what")),
                    quantity(notation("{ν}")),    quantity(plain("ours ± standard error")),
                    quantity(plain("published")), words(plain("verdict"))};
-  for (const Claim& c : claims) {
+  for (const fit::Claim& c : claims) {
     table.rows.push_back({plain(c.where), plain(c.statement), plain(std::isnan(c.nu) ? "" : fixed(c.nu, 3)),
                           plain(with_error(c.ours, c.standard_error)),
                           std::isnan(c.published) ? plain("> 0") : number(c.published), plain(c.verdict)});
@@ -74,7 +74,7 @@ Table claim_table(const std::vector<Claim>& claims) {
   return table;
 }
 
-Table jamming_table(const std::vector<Verdict>& verdicts) {
+Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
   Table table;
   table.caption =
       "Jamming densities by mode, from the coordination number (Eq. 11) and from the pressure (Eq. 14): the paper "
@@ -85,7 +85,7 @@ Table jamming_table(const std::vector<Verdict>& verdicts) {
   for (const char* mode : {"ISO", "UNI", "D2", "D3"}) {
     std::vector<Text> row{plain(mode)};
     for (const char* group : {"coordination.nu_c", "pressure.nu_c"}) {
-      const auto at = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
+      const auto at = std::find_if(verdicts.begin(), verdicts.end(), [&](const fit::Verdict& v) {
         return v.is_parameter && v.mode == mode && v.quantity.ends_with(group);
       });
       if (at == verdicts.end()) break;

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {

@@ -6,7 +6,7 @@
 
 #include "dem/runs/preparation_json.hpp"
 #include "dem/runs/dataset_runs.hpp"
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 
 namespace grainlaw::chain {
 namespace {

@@ -6,10 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "chain/studies/law_quantities.hpp"
-#include "chain/uncertainty.hpp"
 #include "model/student.hpp"
-#include "predict/predict.hpp"
+#include "predict/bands.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -38,12 +36,11 @@ constexpr std::array kQuantities{
 };
 
 /// The law along each rehearsal, at its rows.
-std::vector<predict::Prediction> along(const fit::Calibration& c, Rung rung,
-                                       const std::vector<TestRecord>& rehearsals) {
+std::vector<predict::Prediction> along(const CalibratedLaw& law, Rung rung, const std::vector<TestRecord>& rehearsals) {
   std::vector<predict::Prediction> predictions;
   for (const TestRecord& test : rehearsals) {
-    predictions.push_back(predict::predict(rung, c.parameters, c.coupling, resolve(test.path),
-                                           predict::state_from_law(c.parameters, test.path.nu),
+    predictions.push_back(predict::predict(rung, law.parameters, law.coupling, resolve(test.path),
+                                           predict::state_from_law(law.parameters, test.path.nu),
                                            predict::points_of(test), {}, {}, {}));
   }
   return predictions;
@@ -84,11 +81,11 @@ void set_discrepancy(const std::vector<TestRecord>& rehearsals, const std::vecto
 
 }  // namespace
 
-PredictionError prediction_error(const fit::Calibration& c, const Path& path,
+PredictionError prediction_error(const CalibratedLaw& law, const Path& path,
                                  const std::vector<TestRecord>& rehearsals) {
   PredictionError error;
   const auto segments = resolve(path);
-  const std::optional<Rung> rung = richest_rung(c);
+  const std::optional<Rung> rung = richest_rung(law);
   if (!rung) {
     error.quantities.push_back({"P_star", kNone, kNone, kNone, kNone});
     if (shear_direction(segments).norm() == 0) return error;
@@ -96,12 +93,10 @@ PredictionError prediction_error(const fit::Calibration& c, const Path& path,
     return error;
   }
   error.rung = *rung;
-  const predict::Uncertainty uncertainty = uncertainty_of(c);
-  predict::Prediction prediction = predict::predict(
-      error.rung, c.parameters, c.coupling, segments, predict::state_from_law(c.parameters, path.nu),
-      predict::uniform_points(segments, kPointsPerSegment), {}, {}, {}, {uncertainty.parameters, true});
-  predict::add_bands(c.parameters, uncertainty, prediction);
-  const auto rehearsed = along(c, *rung, rehearsals);
+  const predict::Prediction prediction =
+      predict::predict_with_bands(error.rung, law, segments, predict::state_from_law(law.parameters, path.nu), true,
+                                  predict::uniform_points(segments, kPointsPerSegment), {});
+  const auto rehearsed = along(law, *rung, rehearsals);
   const bool shears = prediction.rows.back().shear_path > kFromShear;
   for (const Quantity& quantity : kQuantities) {
     double largest = 0, widest = 0, squares = 0, rows = 0;

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/calibrate.hpp"
-#include "model/law.hpp"
+#include "model/calibrated_law.hpp"
 #include "model/vocabulary/path.hpp"
 #include "model/vocabulary/test_record.hpp"
 
@@ -31,7 +30,6 @@ struct PredictionError {
 };
 
 /// `rehearsals`: of `path`, one for each packing.
-PredictionError prediction_error(const fit::Calibration& calibration, const Path& path,
-                                 const std::vector<TestRecord>& rehearsals);
+PredictionError prediction_error(const CalibratedLaw& law, const Path& path, const std::vector<TestRecord>& rehearsals);
 
 }  // namespace grainlaw::chain

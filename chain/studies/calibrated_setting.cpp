@@ -4,11 +4,10 @@
 
 #include <set>
 
-#include "chain/parameters_file.hpp"
-#include "model/files/path_file.hpp"
-#include "model/files/provenance.hpp"
 #include "chain/studies/law_quantities.hpp"
 #include "fit/calibrate.hpp"
+#include "model/files/path_file.hpp"
+#include "model/files/provenance.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {
@@ -41,12 +40,12 @@ SettingOutcome calibrated_setting(const std::string& name, const Changes& change
   try {
     const fit::Calibration calibration = fit::calibrate(tests, options, control);
     outcome.cost.fit_seconds = stopwatch.seconds();
-    if (!calibration.converged) outcome.note = "the fit did not converge";
+    if (!calibration.law.converged) outcome.note = "the fit did not converge";
     outcome.quantities = law_quantities(calibration, densities, outcome.seeds.size());
     if (path) {
       for (StudyQuantity& quantity : outcome.quantities) quantity.in_error = false;
-      require_parameters({calibration, "", {}}, Rung::reduced, "calibration");
-      const Rung rung = richest_rung(calibration).value();
+      require_parameters(calibration.law, Rung::reduced, "calibration");
+      const Rung rung = richest_rung(calibration.law).value();
       const auto predicted = predicted_quantities(calibration, *path, rung, outcome.seeds.size(), control);
       outcome.quantities.insert(outcome.quantities.begin(), predicted.begin(), predicted.end());
       outcome.model = to_string(rung);

@@ -5,7 +5,7 @@
 
 #include "model/files/execution.hpp"
 #include "chain/studies/settings_study.hpp"
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "model/vocabulary/path.hpp"
 
 namespace grainlaw::chain {

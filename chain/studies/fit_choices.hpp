@@ -8,7 +8,7 @@
 
 #include "model/files/dataset.hpp"
 #include "chain/studies/key_changes.hpp"
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 
 namespace grainlaw::chain {
 

@@ -4,9 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "chain/parameters_file.hpp"
 #include "dem/runs/spec_file.hpp"
-#include "chain/uncertainty.hpp"
 #include "predict/parameter_step.hpp"
 #include "predict/predict.hpp"
 
@@ -55,24 +53,16 @@ Eigen::MatrixXd influence_of(const fit::Calibration& calibration, const std::vec
 
 }  // namespace
 
-std::optional<Rung> richest_rung(const fit::Calibration& calibration) {
-  std::optional<Rung> richest;
-  for (const Rung rung : kRungs) {
-    if (!missing_parameter(calibration, rung)) richest = rung;
-  }
-  return richest;
-}
-
 std::vector<StudyQuantity> law_quantities(const fit::Calibration& calibration, const std::vector<double>& densities,
                                           std::size_t packings) {
-  const std::vector<std::size_t> parameters = uncertainty_of(calibration).parameters;
+  const std::vector<std::size_t> parameters = uncertain_parameters(calibration.law);
   const Eigen::MatrixXd influence = influence_of(calibration, parameters, packings);
-  const std::vector<predict::ParameterStep> steps = predict::parameter_steps(calibration.parameters, parameters);
+  const std::vector<predict::ParameterStep> steps = predict::parameter_steps(calibration.law.parameters, parameters);
   std::vector<StudyQuantity> quantities;
   for (const LawQuantity& q : quantities_at(densities)) {
-    double value = q.of(calibration.parameters);
+    double value = q.of(calibration.law.parameters);
     for (const char* group : q.groups) {
-      if (!fit::has_values(calibration, group)) value = std::numeric_limits<double>::quiet_NaN();
+      if (!has_values(calibration.law, group)) value = std::numeric_limits<double>::quiet_NaN();
     }
     Eigen::RowVectorXd slope(static_cast<Eigen::Index>(steps.size()));
     for (std::size_t k = 0; k < steps.size(); ++k)
@@ -84,12 +74,12 @@ std::vector<StudyQuantity> law_quantities(const fit::Calibration& calibration, c
 
 std::vector<StudyQuantity> predicted_quantities(const fit::Calibration& calibration, const Path& path, Rung rung,
                                                 std::size_t packings, const RunControl& control) {
-  const std::vector<std::size_t> parameters = uncertainty_of(calibration).parameters;
+  const std::vector<std::size_t> parameters = uncertain_parameters(calibration.law);
   const Eigen::MatrixXd influence = influence_of(calibration, parameters, packings);
   const auto segments = resolve(path);
   const predict::Prediction prediction =
-      predict::predict(rung, calibration.parameters, calibration.coupling, segments,
-                       predict::state_from_law(calibration.parameters, path.nu),
+      predict::predict(rung, calibration.law.parameters, calibration.law.coupling, segments,
+                       predict::state_from_law(calibration.law.parameters, path.nu),
                        predict::uniform_points(segments, kStudyPoints), {}, {}, control, {parameters, true});
   const auto along = [&](const char* name, auto value, auto slope) {
     const auto rows = static_cast<Eigen::Index>(prediction.rows.size());

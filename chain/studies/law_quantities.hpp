@@ -3,7 +3,7 @@
 // times the slope of the quantity. Costs no further fit, and is the error that bands are drawn of; where a fit is linear in
 // its parameters it is that of fits without each packing in turn.
 
-#include <optional>
+#include <vector>
 
 #include "chain/studies/study_quantity.hpp"
 #include "fit/calibrate.hpp"
@@ -11,9 +11,6 @@
 #include "model/vocabulary/path.hpp"
 
 namespace grainlaw::chain {
-
-/// The richest rung of the law that is calibrated; nothing when even the reduced law has parameters without a value.
-std::optional<Rung> richest_rung(const fit::Calibration& calibration);
 
 /// P_star@nu, C_star@nu (Eqs. 11, 14), s_max@nu, beta_s@nu, F_max@nu, beta_F@nu (Eq. 20) at `densities`, and nu_c (Eq. 14);
 /// NaN where a law is not identified. `packings`: number of columns of the influence.

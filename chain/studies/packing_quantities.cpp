@@ -3,20 +3,20 @@
 #include <cmath>
 
 #include "dem/runs/spec_file.hpp"
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::chain {
 namespace {
 
-constexpr double kLeastPackings = 2;
+constexpr double kFewestShowing = 2;
 
 struct OnePacking {
   std::vector<std::string> names;
   std::vector<double> values;  ///< NaN where the packing does not show it [-]
 };
 
-double value_of(const fit::Estimate& estimate) {
-  return estimate.status == fit::Status::not_identified ? kMissing : estimate.value;
+double value_of(const Estimate& estimate) {
+  return estimate.status == Status::not_identified ? kMissing : estimate.value;
 }
 
 OnePacking quantities_of(const Dataset& dataset, std::uint64_t seed) {
@@ -35,27 +35,27 @@ OnePacking quantities_of(const Dataset& dataset, std::uint64_t seed) {
     result.names.push_back(name);
     result.values.push_back(value);
   };
-  const bool has_pressure = fit::has_values(c, "pressure"), has_coordination = fit::has_values(c, "coordination");
+  const bool has_pressure = has_values(c.law, "pressure"), has_coordination = has_values(c.law, "coordination");
   for (const fit::ShearFit& shear : c.shear) {
     const std::string at = "@" + dem::density_text(std::round(shear.nu * 1e6) / 1e6);
-    add("P_star" + at, has_pressure && has_coordination ? c.parameters.isotropic.P_star(shear.nu) : kMissing);
-    add("C_star" + at, has_coordination ? c.parameters.isotropic.coordination.C_star(shear.nu) : kMissing);
+    add("P_star" + at, has_pressure && has_coordination ? c.law.parameters.isotropic.P_star(shear.nu) : kMissing);
+    add("C_star" + at, has_coordination ? c.law.parameters.isotropic.coordination.C_star(shear.nu) : kMissing);
     add("s_max" + at, value_of(shear.s_max));
     add("beta_s" + at, value_of(shear.beta_s));
     add("F_max" + at, value_of(shear.F_max));
     add("beta_F" + at, value_of(shear.beta_F));
   }
-  add("nu_c", has_pressure ? c.parameters.isotropic.pressure.nu_c : kMissing);
+  add("nu_c", has_pressure ? c.law.parameters.isotropic.pressure.nu_c : kMissing);
   return result;
 }
 
-/// Mean of the packings that show it; not shown by fewer than kLeastPackings.
+/// Mean of the packings that show it; not shown by fewer than kFewestShowing.
 StudyQuantity mean_of(const std::string& name, const Eigen::RowVectorXd& x) {
   const Eigen::Array<bool, 1, Eigen::Dynamic> shown = x.array().isFinite();
   const auto n = static_cast<double>(shown.count());
   StudyQuantity quantity{name, Eigen::VectorXd::Constant(1, kMissing), Eigen::MatrixXd::Zero(1, x.size()),
                          name != "nu_c"};
-  if (n < kLeastPackings) return quantity;
+  if (n < kFewestShowing) return quantity;
   const Eigen::RowVectorXd counted = shown.select(x.array(), 0.0).matrix();
   quantity.values(0) = counted.sum() / n;
   quantity.influence = shown.select((x.array() - quantity.values(0)) / std::sqrt(n * (n - 1)), 0.0).matrix();

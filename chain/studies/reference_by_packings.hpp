@@ -10,7 +10,7 @@
 #include "model/files/dataset.hpp"
 #include "model/files/execution.hpp"
 #include "chain/studies/settings_study.hpp"
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 #include "model/vocabulary/path.hpp"
 
 namespace grainlaw::chain {

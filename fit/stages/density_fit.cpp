@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/statistics/inherited_error.hpp"
-#include "fit/statistics/profile.hpp"
-
 namespace grainlaw::fit {
 namespace {
+
+constexpr double kStartBelowData = 0.005;  // at least, of a jamming density, whatever it was before
 
 using Jet3 = ceres::Jet<double, 3>;
 using Jet2 = ceres::Jet<double, 2>;
@@ -41,12 +40,6 @@ std::vector<ResidualBlock> blocks_of(const std::vector<DensitySeries>& series, c
   return blocks;
 }
 
-FreeParameter below_data(const std::string& name, double start, const std::vector<DensitySeries>& series) {
-  FreeParameter nu_c = free_parameter(name, start);
-  nu_c.upper = std::max(nu_c.lower, std::min(nu_c.upper, least_nu(series) - kNearestJamming));
-  return nu_c;
-}
-
 std::vector<double> densities(const std::vector<DensitySeries>& series) {
   std::vector<double> nu;
   for (const DensitySeries& s : series) {
@@ -55,13 +48,14 @@ std::vector<double> densities(const std::vector<DensitySeries>& series) {
   return nu;
 }
 
-void require_densities(StageFit& fit, const std::vector<DensitySeries>& series, int needed) {
-  const int found = distinct_densities(densities(series));
-  if (found >= needed) return;
-  const std::vector<NamedEstimate> parameters = fit.stage.estimates;
-  for (const NamedEstimate& p : parameters) {
-    fit.mark_not_identified(p.name, fmt::format("{} of at least {} densities; test more densities", found, needed));
-  }
+/// What a stage says of its parameters when there are too few densities.
+std::function<void(StageFit&, const LawParameters<double>&)> require_densities(const std::vector<DensitySeries>& series,
+                                                                               int needed) {
+  return [found = distinct_densities(densities(series)), needed](StageFit& fit, const LawParameters<double>&) {
+    if (found >= needed) return;
+    for (const NamedEstimate& p : std::vector<NamedEstimate>(fit.stage.estimates))
+      fit.mark_not_identified(p.name, fmt::format("{} of at least {} densities; test more densities", found, needed));
+  };
 }
 
 /// d misfit/d parameter, row by row.
@@ -74,126 +68,135 @@ Eigen::VectorXd slope_of(const std::vector<DensitySeries>& series, const Slope& 
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Of a fit of Eq. (11) or (14), whose third parameter is nu_c.
-void inherit_nu_c(const StageFit& first, const Eigen::VectorXd& slope, StageFit& second) {
-  inherit_error(slope, first.influence.row(2), first.stage.estimates[2].estimate.degrees_of_freedom, second);
+/// A stage of rows of `series`; free are the parameters of `group`.
+StageDefinition density_stage(const std::string& name, const std::string& group, const std::string& window,
+                              const std::vector<DensitySeries>& series) {
+  StageDefinition stage;
+  stage.name = name;
+  stage.window = window + ", rows unweighted";
+  stage.free = parameters_of(group);
+  stage.remedy = "the rows do not determine it; test more densities";
+  stage.least_nu = least_nu(series);
+  return stage;
 }
 
-const char* const kMoreDensities = "the rows do not determine it; test more densities";
+/// Likewise, of one of the three laws of a state law.
+StageDefinition state_law_stage(const StateLawName& of, const std::string& law, const std::string& window,
+                                const std::vector<DensitySeries>& series) {
+  StageDefinition stage = density_stage(of.prefix + law, of.prefix + law, window, series);
+  stage.profiled = true;
+  return stage;
+}
+
+StageDefinition coordination_stage(const StateLawName& of, const std::vector<DensitySeries>& series,
+                                   const std::string& window) {
+  StageDefinition stage = state_law_stage(of, "coordination", window, series);
+  stage.start = [of, highest = stage.least_nu - kStartBelowData](LawParameters<double>& law) {
+    double& nu_c = (law.*of.law).coordination.nu_c;
+    nu_c = std::min(nu_c, highest);
+  };
+  stage.blocks = [series](const LawParameters<double>&) {
+    return blocks_of<Jet3>(
+        series, "C_star", 3,
+        [](const DensityPoint& p, const auto* x) {
+          using T = std::decay_t<decltype(*x)>;
+          return Coordination<T>{x[0], x[1], x[2]}.C_star(p.nu) - p.C_star;
+        },
+        [](const DensityPoint& p) { return p.C_star; });
+  };
+  stage.judge = require_densities(series, 3);
+  return stage;
+}
+
+StageDefinition rattlers_stage(const StateLawName& of, const std::vector<DensitySeries>& series,
+                               const std::string& window) {
+  StageDefinition stage = state_law_stage(of, "rattlers", window, series);
+  stage.blocks = [of, series](const LawParameters<double>& law) {
+    return blocks_of<Jet2>(
+        series, "rattler_fraction", 2,
+        [nu_c = (law.*of.law).coordination.nu_c](const DensityPoint& p, const auto* x) {
+          using T = std::decay_t<decltype(*x)>;
+          return Rattlers<T>{x[0], x[1]}.fraction(p.nu, T(nu_c)) - p.rattler_fraction;
+        },
+        [](const DensityPoint& p) { return p.rattler_fraction; });
+  };
+  stage.given = {of.prefix + std::string("coordination.nu_c"), [of, series](const LawParameters<double>& law) {
+                   const StateLaw<double>& found = law.*of.law;
+                   const double nu_c = found.coordination.nu_c;
+                   return slope_of(series, [&](const DensityPoint& p) {
+                     return found.rattlers.fraction(p.nu, nu_c) * found.rattlers.phi_v * p.nu / (nu_c * nu_c);
+                   });
+                 }};
+  stage.judge = require_densities(series, 2);
+  return stage;
+}
+
+StageDefinition pressure_stage(const StateLawName& of, const std::vector<DensitySeries>& series,
+                               const std::string& window) {
+  StageDefinition stage = state_law_stage(of, "pressure", window, series);
+  stage.start = [of, highest = stage.least_nu - kStartBelowData](LawParameters<double>& law) {
+    double& nu_c = (law.*of.law).pressure.nu_c;
+    nu_c = std::min(nu_c, highest);
+  };
+  stage.blocks = [of, series](const LawParameters<double>& law) {
+    return blocks_of<Jet3>(
+        series, "P_scaled", 3,
+        [](const DensityPoint& p, const auto* x) {
+          using T = std::decay_t<decltype(*x)>;
+          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) - x[2] * (p.P_star / (p.nu * p.C()));
+        },
+        [nu_c = (law.*of.law).pressure.nu_c](const DensityPoint& p) { return nu_c * p.P_star / (p.nu * p.C()); });
+  };
+  stage.judge = require_densities(series, 3);
+  return stage;
+}
 
 }  // namespace
 
-DensityProblem coordination_problem(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                    const Coordination<double>& start) {
-  DensityProblem problem;
-  problem.parameters = {free_parameter(prefix + "coordination.C1", start.C1),
-                        free_parameter(prefix + "coordination.alpha", start.alpha),
-                        below_data(prefix + "coordination.nu_c", start.nu_c, series)};
-  problem.blocks = blocks_of<Jet3>(
-      series, "C_star", 3,
-      [](const DensityPoint& p, const auto* x) {
-        using T = std::decay_t<decltype(*x)>;
-        return Coordination<T>{x[0], x[1], x[2]}.C_star(p.nu) - p.C_star;
-      },
-      [](const DensityPoint& p) { return p.C_star; });
-  return problem;
+std::vector<StageDefinition> state_law_stages(const StateLawName& of, const std::vector<DensitySeries>& series,
+                                              const std::string& window) {
+  return {coordination_stage(of, series, window), rattlers_stage(of, series, window),
+          pressure_stage(of, series, window)};
 }
 
-DensityProblem rattlers_problem(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                const Rattlers<double>& start, double nu_c) {
-  DensityProblem problem;
-  problem.parameters = {free_parameter(prefix + "rattlers.phi_c", start.phi_c),
-                        free_parameter(prefix + "rattlers.phi_v", start.phi_v)};
-  problem.blocks = blocks_of<Jet2>(
-      series, "rattler_fraction", 2,
-      [nu_c](const DensityPoint& p, const auto* x) {
-        using T = std::decay_t<decltype(*x)>;
-        return Rattlers<T>{x[0], x[1]}.fraction(p.nu, T(nu_c)) - p.rattler_fraction;
-      },
-      [](const DensityPoint& p) { return p.rattler_fraction; });
-  return problem;
+std::vector<StageDefinition> left_out_state_law(const StateLawName& of, const std::string& remedy) {
+  std::vector<StageDefinition> stages;
+  for (const std::string law : {"coordination", "rattlers", "pressure"})
+    stages.push_back(left_out(of.prefix + law, parameters_of(of.prefix + law), remedy));
+  return stages;
 }
 
-DensityProblem pressure_problem(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                const Pressure<double>& start) {
-  DensityProblem problem;
-  problem.parameters = {free_parameter(prefix + "pressure.p0", start.p0),
-                        free_parameter(prefix + "pressure.gamma_p", start.gamma_p),
-                        below_data(prefix + "pressure.nu_c", start.nu_c, series)};
-  problem.blocks = blocks_of<Jet3>(
-      series, "P_scaled", 3,
-      [](const DensityPoint& p, const auto* x) {
-        using T = std::decay_t<decltype(*x)>;
-        return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) - x[2] * (p.P_star / (p.nu * p.C()));
-      },
-      [nu_c = start.nu_c](const DensityPoint& p) { return nu_c * p.P_star / (p.nu * p.C()); });
-  return problem;
-}
-
-std::vector<StageFit> fit_state_law(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                    const std::string& window, StateLaw<double>& law, const CalibrationOptions& options,
-                                    const RunControl& control) {
-  std::vector<StageFit> fits;
-  std::vector<DensityProblem> problems;
-  const auto run = [&](const std::string& stage, DensityProblem problem, int densities_needed) -> StageFit& {
-    fits.push_back(fit_stage(prefix + stage, window + ", rows unweighted", problem.parameters, problem.blocks,
-                             kMoreDensities, options.threads, control, {options.loss}));
-    require_densities(fits.back(), series, densities_needed);
-    problems.push_back(std::move(problem));
-    return fits.back();
-  };
-  // Starts below the data, whatever the caller's guess of the jamming density was.
-  const double highest_nu_c = least_nu(series) - 0.005;
-  law.coordination.nu_c = std::min(law.coordination.nu_c, highest_nu_c);
-  law.pressure.nu_c = std::min(law.pressure.nu_c, highest_nu_c);
-
-  const StageFit& C = run("coordination", coordination_problem(prefix, series, law.coordination), 3);
-  law.coordination = {C.solution.x(0), C.solution.x(1), C.solution.x(2)};
-  const StageFit& phi = run("rattlers", rattlers_problem(prefix, series, law.rattlers, law.coordination.nu_c), 2);
-  law.rattlers = {phi.solution.x(0), phi.solution.x(1)};
-  inherit_nu_c(fits[0],
-               slope_of(series,
-                        [&](const DensityPoint& p) {
-                          const double nu_c = law.coordination.nu_c;
-                          return law.rattlers.fraction(p.nu, nu_c) * law.rattlers.phi_v * p.nu / (nu_c * nu_c);
-                        }),
-               fits[1]);
-  const StageFit& P = run("pressure", pressure_problem(prefix, series, law.pressure), 3);
-  law.pressure = {P.solution.x(0), P.solution.x(1), P.solution.x(2)};
-  for (std::size_t i = 0; i < fits.size() && options.profiles; ++i)
-    profile_doubtful(problems[i].parameters, problems[i].blocks, options.threads, control, fits[i]);
-  return fits;
-}
-
-StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string& window, const StageFit& pressure,
-                     double start, const CalibrationOptions& options, const RunControl& control) {
-  const double nu_c = pressure.solution.x(2);
+StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const std::string& window, double nu_c) {
   for (const DensitySeries& s : series) {
     if (std::any_of(s.points.begin(), s.points.end(),
                     [](const DensityPoint& p) { return std::isnan(p.mean_overlap); })) {
-      return skipped_stage("overlap", {"overlap.D"},
-                           "test " + s.test + " lacks values of mean_overlap; add the column");
+      return left_out("overlap", parameters_of("overlap"),
+                      "test " + s.test + " lacks values of mean_overlap; add the column");
     }
   }
-  const auto blocks = blocks_of<Jet1>(
-      series, "mean_overlap", 1,
-      [nu_c](const DensityPoint& p, const auto* x) { return x[0] * std::log(p.nu / nu_c) - p.mean_overlap; },
-      [](const DensityPoint& p) { return p.mean_overlap; });
-  StageFit fit =
-      fit_stage("overlap", window + fmt::format(", rows unweighted, nu_c = {:.5f} of the pressure", nu_c),
-                {free_parameter("overlap.D", start)}, blocks, kMoreDensities, options.threads, control, {options.loss});
-  const double D = fit.solution.x(0);
-  inherit_nu_c(pressure, slope_of(series, [&](const DensityPoint&) { return -D / nu_c; }), fit);
-  return fit;
+  StageDefinition stage = density_stage("overlap", "overlap", window, series);
+  stage.window += fmt::format(", nu_c = {:.5f} of the pressure", nu_c);
+  stage.blocks = [series, nu_c](const LawParameters<double>&) {
+    return blocks_of<Jet1>(
+        series, "mean_overlap", 1,
+        [nu_c](const DensityPoint& p, const auto* x) { return x[0] * std::log(p.nu / nu_c) - p.mean_overlap; },
+        [](const DensityPoint& p) { return p.mean_overlap; });
+  };
+  stage.given = {"pressure.nu_c", [series, nu_c](const LawParameters<double>& law) {
+                   return slope_of(series, [&](const DensityPoint&) { return -law.overlap_D / nu_c; });
+                 }};
+  return stage;
 }
 
-StageFit fit_fabric_trace(const std::vector<DensitySeries>& series, const std::string& window, double start,
-                          const CalibrationOptions& options, const RunControl& control) {
-  const auto blocks = blocks_of<Jet1>(
-      series, "F_v", 1, [](const DensityPoint& p, const auto* x) { return x[0] * (p.nu * p.C()) - p.F_v; },
-      [](const DensityPoint& p) { return p.F_v; });
-  return fit_stage("fabric_trace", window + ", rows unweighted, measured C", {free_parameter("fabric.g3", start)},
-                   blocks, kMoreDensities, options.threads, control, {options.loss});
+StageDefinition fabric_trace_stage(const std::vector<DensitySeries>& series, const std::string& window) {
+  StageDefinition stage = density_stage("fabric_trace", "fabric", window, series);
+  stage.window += ", measured C";
+  stage.blocks = [series](const LawParameters<double>&) {
+    return blocks_of<Jet1>(
+        series, "F_v", 1, [](const DensityPoint& p, const auto* x) { return x[0] * (p.nu * p.C()) - p.F_v; },
+        [](const DensityPoint& p) { return p.F_v; });
+  };
+  return stage;
 }
 
 }  // namespace grainlaw::fit

@@ -6,39 +6,32 @@
 //             measured C = (1 - phi_r) C*: the pressure's parameters then carry no misfit of Eqs. (11) and (12). nu_c
 //             stands on both sides. Unweighted, so that no row near jamming outweighs the branch.
 //   Eq. (13): <delta>_c/<r> = D ln(nu/nu_c), nu_c that of Eq. (14)
-// nu_c ends at the latest 1e-4 below the lowest density of the data, where Eq. (11) has its infinite slope.
+// nu_c ends at the latest kNearestJamming below the lowest density of the data, where Eq. (11) has its infinite slope.
 
-#include "fit/stages/density_series.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/data/density_series.hpp"
+#include "fit/stages/stage.hpp"
 
 namespace grainlaw::fit {
 
-/// The least squares problem of one stage, as it is solved and as tests differentiate it.
-struct DensityProblem {
-  std::vector<FreeParameter> parameters;
-  std::vector<ResidualBlock> blocks;
+/// One of the two state laws of the calibrated law.
+struct StateLawName {
+  const char* prefix;  ///< of its names in parameter_table()
+  StateLaw<double> LawParameters<double>::*law;
 };
+inline constexpr StateLawName kUnloadingLaw{"", &LawParameters<double>::isotropic};
+inline constexpr StateLawName kSteadyLaw{"steady_", &LawParameters<double>::steady};
 
-/// `prefix` is "" (ISO unloading) or "steady_" (steady D2): names are those of parameter_table().
-DensityProblem coordination_problem(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                    const Coordination<double>& start);
-DensityProblem rattlers_problem(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                const Rattlers<double>& start, double nu_c);
-DensityProblem pressure_problem(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                const Pressure<double>& start);
+/// Stages "coordination", "rattlers", "pressure" with the prefix, in this order. With fewer than three densities (two for the
+/// rattlers) parameters are not identified.
+std::vector<StageDefinition> state_law_stages(const StateLawName& of, const std::vector<DensitySeries>& series,
+                                              const std::string& window);
+/// They without any data.
+std::vector<StageDefinition> left_out_state_law(const StateLawName& of, const std::string& remedy);
 
-/// Stages "coordination", "rattlers", "pressure" with the prefix, in this order; errors of the second contain that of nu_c. `law` holds the start and takes the result.
-/// With fewer than three densities (two for the rattlers) parameters are not identified.
-std::vector<StageFit> fit_state_law(const std::string& prefix, const std::vector<DensitySeries>& series,
-                                    const std::string& window, StateLaw<double>& law, const CalibrationOptions& options,
-                                    const RunControl& control);
-
-/// Stage "overlap": D of Eq. (13), with nu_c of the stage `pressure`. Left out when the data set does not contain overlaps.
-StageFit fit_overlap(const std::vector<DensitySeries>& series, const std::string& window, const StageFit& pressure,
-                     double start, const CalibrationOptions& options, const RunControl& control);
+/// Stage "overlap": D of Eq. (13) with `nu_c` of the pressure. Left out when the data set does not contain overlaps.
+StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const std::string& window, double nu_c);
 
 /// Stage "fabric_trace": g3.
-StageFit fit_fabric_trace(const std::vector<DensitySeries>& series, const std::string& window, double start,
-                          const CalibrationOptions& options, const RunControl& control);
+StageDefinition fabric_trace_stage(const std::vector<DensitySeries>& series, const std::string& window);
 
 }  // namespace grainlaw::fit

@@ -6,24 +6,47 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace grainlaw::fit {
 namespace {
 
 using Jet3 = ceres::Jet<double, 3>;
 
-ExponentialLaw<double> best_start(const std::vector<Eigen::Vector2d>& values, const Eigen::VectorXd& weight,
-                                  double nu_c, const std::array<FreeParameter, 3>& bounds) {
+/// The value that one test gave.
+struct DensityValue {
+  std::string test;
+  int cluster;
+  double nu, Q;
+  double weight = 0;
+};
+
+std::vector<DensityValue> values_of(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
+                                    const std::vector<int>& cluster) {
+  std::vector<DensityValue> values;
+  for (std::size_t i = 0; i < shear.size(); ++i) {
+    const Estimate& estimate = shear[i].*quantity.estimate;
+    if (estimate.status == Status::fitted || estimate.status == Status::at_bound)
+      values.push_back({shear[i].test, cluster[i], shear[i].nu, estimate.value});
+  }
+  double mean = 0;
+  for (const DensityValue& v : values) mean += std::abs(v.Q) / static_cast<double>(values.size());
+  for (DensityValue& v : values) v.weight = 1 / std::max({std::abs(v.Q), 0.2 * mean, 1e-12});
+  return values;
+}
+
+ExponentialLaw<double> best_start(const std::vector<DensityValue>& values, const std::string& law, double nu_c) {
   const auto n = static_cast<Eigen::Index>(values.size());
+  const std::array<FreeParameter, 2> bounds{free_parameter(law + ".Q_limit", 0), free_parameter(law + ".Q_c", 0)};
   ExponentialLaw<double> best;
   double best_cost = std::numeric_limits<double>::infinity();
   for (const double alpha : {2.5, 5.0, 10.0, 20.0, 40.0}) {
     Eigen::MatrixXd A(n, 2);
     Eigen::VectorXd q(n);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::Vector2d& v = values[static_cast<std::size_t>(i)];
-      A.row(i) << weight(i), weight(i) * std::exp(-alpha * (v(0) / nu_c - 1));
-      q(i) = weight(i) * v(1);
+      const DensityValue& v = values[static_cast<std::size_t>(i)];
+      A.row(i) << v.weight, v.weight * std::exp(-alpha * (v.nu / nu_c - 1));
+      q(i) = v.weight * v.Q;
     }
     Eigen::Vector2d x = A.completeOrthogonalDecomposition().solve(q);
     for (int k = 0; k < 2; ++k)
@@ -37,6 +60,26 @@ ExponentialLaw<double> best_start(const std::vector<Eigen::Vector2d>& values, co
   return best;
 }
 
+std::vector<ResidualBlock> value_blocks(const std::vector<DensityValue>& values, const std::string& law, double nu_c) {
+  std::vector<ResidualBlock> blocks;
+  for (const DensityValue& v : values) {
+    ResidualBlock block;
+    block.test = v.test;
+    block.cluster = v.cluster;
+    block.weight = Eigen::VectorXd::Constant(1, v.weight);
+    block.channels.push_back({law, 0, 1, 0, std::abs(v.Q)});
+    block.evaluate = differentiated<Jet3>(
+        [nu = v.nu, Q = v.Q, nu_c](const auto* x, auto* misfit) {
+          using T = std::decay_t<decltype(*x)>;
+          misfit[0] = ExponentialLaw<T>{x[0], x[1], x[2]}.value(nu, T(nu_c)) - Q;
+          return true;
+        },
+        3, 1);
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
 }  // namespace
 
 const std::array<ShearQuantity, 4> kShearQuantities{{
@@ -45,39 +88,6 @@ const std::array<ShearQuantity, 4> kShearQuantities{{
     {"fabric_max", &ShearFit::F_max, &LawParameters<double>::fabric_max},
     {"fabric_rate", &ShearFit::beta_F, &LawParameters<double>::fabric_rate},
 }};
-
-DensityLawProblem density_law_problem(const std::string& name, const std::vector<std::string>& tests,
-                                      const std::vector<int>& cluster, const std::vector<Eigen::Vector2d>& values,
-                                      double nu_c) {
-  double mean = 0;
-  for (const Eigen::Vector2d& v : values) mean += std::abs(v(1)) / static_cast<double>(values.size());
-  Eigen::VectorXd weight(static_cast<Eigen::Index>(values.size()));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    weight(static_cast<Eigen::Index>(i)) = 1 / std::max({std::abs(values[i](1)), 0.2 * mean, 1e-12});
-  }
-  std::array<FreeParameter, 3> p{free_parameter(name + ".Q_limit", 0), free_parameter(name + ".Q_c", 0),
-                                 free_parameter(name + ".alpha", 0)};
-  const ExponentialLaw<double> start = best_start(values, weight, nu_c, p);
-  DensityLawProblem problem;
-  problem.parameters = {free_parameter(name + ".Q_limit", start.Q_limit), free_parameter(name + ".Q_c", start.Q_c),
-                        free_parameter(name + ".alpha", start.alpha)};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    ResidualBlock block;
-    block.test = tests[i];
-    block.cluster = cluster[i];
-    block.weight = weight.segment<1>(static_cast<Eigen::Index>(i));
-    block.channels.push_back({name, 0, 1, 0, std::abs(values[i](1))});
-    block.evaluate = differentiated<Jet3>(
-        [nu = values[i](0), Q = values[i](1), nu_c](const auto* x, auto* misfit) {
-          using T = std::decay_t<decltype(*x)>;
-          misfit[0] = ExponentialLaw<T>{x[0], x[1], x[2]}.value(nu, T(nu_c)) - Q;
-          return true;
-        },
-        3, 1);
-    problem.blocks.push_back(std::move(block));
-  }
-  return problem;
-}
 
 void settle_constant_law(StageFit& fit, const std::string& law) {
   std::vector<NamedEstimate>& all = fit.stage.estimates;
@@ -88,38 +98,32 @@ void settle_constant_law(StageFit& fit, const std::string& law) {
   alpha.note = "without effect while Q_c is 0";
 }
 
-StageFit fit_density_law(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
-                         const std::vector<int>& cluster, LawParameters<double>& law, const CalibrationOptions& options,
-                         const RunControl& control) {
+StageDefinition density_law_stage(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
+                                  const std::vector<int>& cluster, double nu_c, const CalibrationOptions& options) {
   const std::string name = quantity.name;
-  std::vector<std::string> tests;
-  std::vector<int> cluster_of_test;
-  std::vector<Eigen::Vector2d> values;
+  const std::vector<DensityValue> values = values_of(quantity, shear, cluster);
   std::vector<double> nu;
-  for (std::size_t i = 0; i < shear.size(); ++i) {
-    const Estimate& estimate = shear[i].*quantity.estimate;
-    if (estimate.status != Status::fitted && estimate.status != Status::at_bound) continue;
-    tests.push_back(shear[i].test);
-    cluster_of_test.push_back(cluster[i]);
-    values.emplace_back(shear[i].nu, estimate.value);
-    nu.push_back(shear[i].nu);
-  }
+  for (const DensityValue& v : values) nu.push_back(v.nu);
   const int found = distinct_densities(nu);
   const std::string remedy = fmt::format(
       "{} of at least {} densities with shear at constant volume that shows {}; test more densities, each to eps_dev "
       ">= {:g}",
       found, kDensitiesNeeded, name, options.steady_from);
-  if (values.empty()) return skipped_stage(name, {name + ".Q_limit", name + ".Q_c", name + ".alpha"}, remedy);
+  if (values.empty()) return left_out(name, parameters_of(name), remedy);
 
-  const DensityLawProblem problem = density_law_problem(name, tests, cluster_of_test, values, law.shear_nu_c);
-  StageFit fit = fit_stage(name, fmt::format("values of the stage shear, relative, nu_c = {:g} fixed", law.shear_nu_c),
-                           problem.parameters, problem.blocks, remedy, options.threads, control, {options.loss});
-  law.*quantity.law = {fit.solution.x(0), fit.solution.x(1), fit.solution.x(2)};
-  settle_constant_law(fit, name);
-  if (found < kDensitiesNeeded) {
-    for (const FreeParameter& p : problem.parameters) fit.mark_not_identified(p.name, remedy);
-  }
-  return fit;
+  StageDefinition stage;
+  stage.name = name;
+  stage.window = fmt::format("values of the stage shear, relative, nu_c = {:g} fixed", nu_c);
+  stage.free = parameters_of(name);
+  stage.remedy = remedy;
+  stage.start = [=](LawParameters<double>& law) { law.*quantity.law = best_start(values, name, nu_c); };
+  stage.blocks = [=](const LawParameters<double>&) { return value_blocks(values, name, nu_c); };
+  stage.judge = [=](StageFit& fit, const LawParameters<double>&) {
+    settle_constant_law(fit, name);
+    if (found >= kDensitiesNeeded) return;
+    for (const std::string& parameter : parameters_of(name)) fit.mark_not_identified(parameter, remedy);
+  };
+  return stage;
 }
 
 }  // namespace grainlaw::fit

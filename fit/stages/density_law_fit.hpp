@@ -3,8 +3,8 @@
 // F_max and beta_F. nu_c is given, not fitted: it is degenerate with Q_c and alpha. Each value weighs by its own magnitude
 // (at least a fifth of the mean), since rates scatter in proportion to their size.
 
-#include "fit/stages/density_series.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/data/density_series.hpp"
+#include "fit/stages/stage.hpp"
 
 namespace grainlaw::fit {
 
@@ -18,22 +18,13 @@ extern const std::array<ShearQuantity, 4> kShearQuantities;
 
 inline constexpr int kDensitiesNeeded = 3;  ///< for the three parameters of a law
 
-struct DensityLawProblem {
-  std::vector<FreeParameter> parameters;  ///< Q_limit, Q_c, alpha
-  std::vector<ResidualBlock> blocks;      ///< one row each
-};
-/// `values` (nu, Q) per test; starts from the best of a few alpha with Q_limit and Q_c linear in between.
-DensityLawProblem density_law_problem(const std::string& name, const std::vector<std::string>& tests,
-                                      const std::vector<int>& cluster, const std::vector<Eigen::Vector2d>& values,
-                                      double nu_c);
-
 /// A law without decaying part (Q_c on its bound 0) is a constant: alpha then is fixed, without effect, and not unknown.
 void settle_constant_law(StageFit& fit, const std::string& law);
 
-/// Stage of the quantity's name over the tests in which it is fitted; the result goes to `law` as well. With fewer than
-/// three densities its parameters are not identified (the curve still meets the values there are).
-StageFit fit_density_law(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
-                         const std::vector<int>& cluster, LawParameters<double>& law, const CalibrationOptions& options,
-                         const RunControl& control);
+/// Stage of the quantity's name over the tests in which it is fitted, one block of one row each; `cluster` of each test, its
+/// packing. Starts from the best of a few alpha with Q_limit and Q_c linear in between. With fewer than three densities its
+/// parameters are not identified (the curve still meets the values there are).
+StageDefinition density_law_stage(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
+                                  const std::vector<int>& cluster, double nu_c, const CalibrationOptions& options);
 
 }  // namespace grainlaw::fit

@@ -1,27 +1,22 @@
 #pragma once
-// The coupled evolution equations, Eq. (16), on all trajectories at once (evolution_problem.hpp). Free: p0, gamma_p, nu_c of
+// The coupled evolution equations, Eq. (16), on all trajectories at once (evolution_blocks.hpp). Free: p0, gamma_p, nu_c of
 // Eq. (14), the twelve numbers of Eq. (20), and a2 (Coupling::energy) or a0 (Coupling::single).
 
-#include "fit/stages/evolution_problem.hpp"
-#include "fit/statistics/inherited_error.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/stages/stage.hpp"
 #include "fit/stages/trajectory.hpp"
 
 namespace grainlaw::fit {
 
-/// Names of the free parameters without those of the laws of Eq. (20), or the coupling's, named in `held`.
-std::vector<std::string> evolution_parameters(Coupling coupling, const std::vector<std::string>& held = {});
-
 /// True when a trajectory changes the volume of a state with fabric along its test's shear: only then the coupling of
 /// fabric and volumetric strain is in the data.
 bool contains_anisotropy(const std::vector<Trajectory>& trajectories);
+inline constexpr const char* kChangeTheVolume =  ///< the remedy
+    "add a test that shears and then changes the volume, e.g. D2 to eps_dev = 0.15 and then ISO to nu + 0.03 and back";
 
-/// Stage "evolution"; `law` holds the start and takes the result. Claims are withdrawn where the data cannot carry them:
-/// saturation shown at fewer than three densities, a rate that acts on nothing, no path that identifies the coupling.
-/// Laws of which no shear test shows anything (`held`) stay as they are. Errors contain those of `found` for Eqs. (11), (12).
-StageFit fit_evolution(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                       std::vector<std::string> held, const CalibrationOptions& options, const RunControl& control,
-                       const FoundErrors& found = {});
+/// Stage "evolution". Claims are withdrawn where the data cannot carry them (evolution_checks.hpp). Laws of Eq. (20) named in
+/// `held`, of which no shear test shows anything, stay as they are; so does the coupling without any path that identifies it.
+StageDefinition evolution_stage(const std::vector<Trajectory>& trajectories, const std::vector<std::string>& held,
+                                const CalibrationOptions& options);
 
 /// a1 = mean of A1/(B F_N) over steady shear by the identity A1 = (2/3)(A2 - sigma_dev): tied to a2, Coupling::energy.
 /// Its error comes from a2's and from the scatter of the ratio over packings.

@@ -3,7 +3,8 @@
 // are those of shear like D2; with everything else held, shear like D3 then shows what is different. Rows, quantities and
 // weights are those of the stage "evolution".
 
-#include "fit/stages/evolution_fit.hpp"
+#include "fit/stages/stage.hpp"
+#include "fit/stages/trajectory.hpp"
 
 namespace grainlaw::fit {
 
@@ -17,12 +18,7 @@ struct ByLodeAngle {
 };
 ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories);
 
-/// "lode.stress_ratio", "lode.fabric".
-std::vector<std::string> lode_parameters();
-
-/// Stage "lode" on trajectories of another Lode angle; `law` takes the result. Without any both effects are fixed at zero.
-/// Errors contain those of `found` for the laws that are held.
-StageFit fit_lode(const std::vector<Trajectory>& others, LawParameters<double>& law, const CalibrationOptions& options,
-                  const RunControl& control, const FoundErrors& found = {});
+/// Stage "lode" on trajectories of another Lode angle. Without any both effects are fixed at zero.
+StageDefinition lode_stage(const std::vector<Trajectory>& others, const CalibrationOptions& options);
 
 }  // namespace grainlaw::fit

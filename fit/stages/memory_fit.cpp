@@ -4,28 +4,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fit/stages/evolution_fit.hpp"
-#include "fit/statistics/profile.hpp"
 #include "fit/stages/trajectory_misfit.hpp"
 
 namespace grainlaw::fit {
 namespace {
 
-constexpr int kMemoryParameters = 8;
-using MemoryJet = ceres::Jet<double, kMemoryParameters>;
+/// Free ones. The last two act only where the volume of a sheared state changes.
+constexpr std::array kFree{"memory.G",   "memory.alpha", "memory.k",   "memory.lambda",
+                           "memory.chi", "memory.kappa", "memory.c_F", "memory.a2"};
+constexpr std::size_t kVolumetric = 2;
+using MemoryJet = ceres::Jet<double, static_cast<int>(kFree.size())>;
 constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number
 constexpr double kWindowRounding = 1e-9;
-const std::vector<std::string> kGivenToMemory{"coordination",        "rattlers",        "pressure",
-                                              "steady_coordination", "steady_rattlers", "steady_pressure",
-                                              "stress_ratio_max",    "fabric_max"};
-
-std::vector<std::string> free_names(bool volumetric) {
-  std::vector<std::string> names{"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.chi", "memory.kappa"};
-  if (volumetric) names.insert(names.end(), {"memory.c_F", "memory.a2"});
-  return names;
-}
 
 bool constant_volume(const Trajectory& t) { return std::abs(t.direction.dx) <= 1e-12; }
 
@@ -92,6 +86,20 @@ bool lag_may_be_none(const StageFit& fit) {
   return false;
 }
 
+void withdraw_vague(StageFit& fit) {
+  const bool may_not_lag = lag_may_be_none(fit);
+  for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
+    const std::string name = fit.stage.estimates[k].name;
+    const double value = fit.stage.estimates[k].estimate.value, error = fit.stage.estimates[k].estimate.standard_error;
+    const bool may_be_vague = name == "memory.chi" || name == "memory.kappa" ||  // both may be none
+                              (name == "memory.lambda" && may_not_lag);
+    if (may_be_vague || !(error > kVagueParameter * std::abs(value))) continue;
+    const bool volumetric = k >= kFree.size() - kVolumetric;
+    fit.mark_not_identified(name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
+                                      (volumetric ? kChangeTheVolume : "add seeds and lower densities"));
+  }
+}
+
 std::string memory_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories with shear, each segment from its measured start: at constant volume P* of all rows relative "
@@ -102,61 +110,35 @@ std::string memory_window(const CalibrationOptions& options) {
 
 }  // namespace
 
-MemoryProblem memory_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                             bool volumetric, const CalibrationOptions& options) {
-  MemoryProblem problem;
-  std::vector<std::size_t> index;
-  const auto value = fields(start);
-  for (const std::string& name : free_names(volumetric)) {
-    index.push_back(parameter_index(name));
-    problem.parameters.push_back(free_parameter(name, *value[index.back()]));
+StageDefinition memory_stage(const std::vector<Trajectory>& trajectories, const CalibrationOptions& options) {
+  StageDefinition stage;
+  stage.name = "memory";
+  stage.window = memory_window(options);
+  stage.free.assign(kFree.begin(), kFree.end());
+  if (!contains_anisotropy(trajectories)) {
+    stage.free.resize(kFree.size() - kVolumetric);
+    for (std::size_t k = stage.free.size(); k < kFree.size(); ++k)
+      stage.absent.push_back({kFree[k], {0, kUndefined, Status::not_identified, kChangeTheVolume}});
   }
-  for (const Trajectory& t : trajectories) {
-    if (!t.axes.empty() && !t.rows.empty()) problem.blocks.push_back(memory_block(t, start, index, options));
-  }
-  return problem;
-}
-
-StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                    const CalibrationOptions& options, const RunControl& control, const FoundErrors& found) {
-  const std::string remedy =
-      "add a test that shears and then changes the volume, e.g. D2 to eps_dev = 0.15 and then ISO to nu + 0.03 and "
-      "back";
-  const bool volumetric = contains_anisotropy(trajectories);
-  const MemoryProblem problem = memory_problem(trajectories, law, volumetric, options);
-  StageFit fit = fit_stage("memory", memory_window(options), problem.parameters, problem.blocks,
-                           "the trajectories do not determine it; shear at more and at lower densities",
-                           options.threads, control, {options.loss, options.starts});
-  if (fit.solution.defined) {
-    inherit_error(
-        kGivenToMemory, found, law,
-        [&](const LawParameters<double>& given) {
-          return memory_problem(trajectories, given, volumetric, options).blocks;
-        },
-        options.threads, fit);
-    const auto field = fields(law);
-    const bool may_not_lag = lag_may_be_none(fit);
-    for (std::size_t k = 0; k < problem.parameters.size(); ++k) {
-      const std::string& name = problem.parameters[k].name;
-      const double value = fit.solution.x(static_cast<Eigen::Index>(k));
-      *field[parameter_index(name)] = value;
-      const double error = fit.stage.estimates[k].estimate.standard_error;
-      const bool may_be_vague = name == "memory.chi" || name == "memory.kappa" ||  // both may be none
-                                (name == "memory.lambda" && may_not_lag);
-      if (!may_be_vague && error > kVagueParameter * std::abs(value))
-        fit.mark_not_identified(
-            name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
-                      (name == "memory.c_F" || name == "memory.a2" ? remedy : "add seeds and lower densities"));
+  stage.remedy = "the trajectories do not determine it; shear at more and at lower densities";
+  stage.blocks = [=, free = stage.free](const LawParameters<double>& law) {
+    std::vector<std::size_t> index;
+    for (const std::string& name : free) index.push_back(parameter_index(name));
+    std::vector<ResidualBlock> blocks;
+    for (const Trajectory& t : trajectories) {
+      if (!t.axes.empty() && !t.rows.empty()) blocks.push_back(memory_block(t, law, index, options));
     }
-  }
-  if (options.profiles) profile_doubtful(problem.parameters, problem.blocks, options.threads, control, fit);
-  if (!volumetric) {
-    for (const char* name : {"memory.c_F", "memory.a2"})
-      fit.stage.estimates.push_back({name, {0, std::nan(""), Status::not_identified, remedy}});
-  }
-  return fit;
+    return blocks;
+  };
+  stage.given_groups = {"coordination",    "rattlers",        "pressure",         "steady_coordination",
+                        "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"};
+  stage.judge = [](StageFit& fit, const LawParameters<double>&) { withdraw_vague(fit); };
+  stage.coupled = stage.profiled = true;
+  return stage;
 }
 
-StageFit no_memory(const std::string& remedy) { return skipped_stage("memory", free_names(true), remedy); }
+StageDefinition no_memory(const std::string& remedy) {
+  return left_out("memory", {kFree.begin(), kFree.end()}, remedy);
+}
 
 }  // namespace grainlaw::fit

@@ -7,27 +7,16 @@
 //   P   shear at constant volume, all rows (k); elsewhere shown
 // Each test and quantity counts the same, in units of the scales in CalibrationOptions.
 
-#include "fit/statistics/inherited_error.hpp"
-#include "fit/stages/stage_fit.hpp"
+#include "fit/stages/stage.hpp"
 #include "fit/stages/trajectory.hpp"
 
 namespace grainlaw::fit {
 
-struct MemoryProblem {
-  std::vector<FreeParameter> parameters;
-  std::vector<ResidualBlock> blocks;  ///< one per trajectory with shear in its test
-};
-
-/// Starts from `start`. Without `volumetric`, c_F and a2 keep its values.
-MemoryProblem memory_problem(const std::vector<Trajectory>& trajectories, const LawParameters<double>& start,
-                             bool volumetric, const CalibrationOptions& options);
-
-/// Stage "memory"; `law` holds the start and takes the result. A parameter whose relative error is beyond a half, or that
-/// the data do not contain, is not identified. Errors contain those of `found` for the laws of the stages before.
-StageFit fit_memory(const std::vector<Trajectory>& trajectories, LawParameters<double>& law,
-                    const CalibrationOptions& options, const RunControl& control, const FoundErrors& found = {});
+/// Stage "memory". A parameter whose relative error is beyond a half, or that the data do not contain, is not identified;
+/// without a trajectory that changes the volume of a sheared state these are c_F and a2.
+StageDefinition memory_stage(const std::vector<Trajectory>& trajectories, const CalibrationOptions& options);
 
 /// The stage when a law that it builds on is missing: nothing of it is identified, `remedy` says why.
-StageFit no_memory(const std::string& remedy);
+StageDefinition no_memory(const std::string& remedy);
 
 }  // namespace grainlaw::fit

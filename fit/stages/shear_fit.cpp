@@ -7,10 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fit/stages/density_series.hpp"
-#include "fit/stages/measured_state.hpp"
-#include "fit/stages/shear_window.hpp"
-#include "fit/stages/steady_state.hpp"
+#include "fit/data/shear_rows.hpp"
 #include "model/reduced_law.hpp"
 
 namespace grainlaw::fit {
@@ -41,8 +38,8 @@ Curve fit_curve(const SaturationProblem& problem, double start, double scale, co
                 const RunControl& control, Stage& stage) {
   Curve curve;
   const std::string& quantity = problem.blocks.front().channels.front().quantity;
-  const StageFit fit = fit_stage("shear " + problem.blocks.front().test, "", problem.parameters, problem.blocks,
-                                 "the rows do not determine it", options.threads, control, {options.loss});
+  const StageFit fit = fit_stage("shear " + problem.blocks.front().test, "", problem, "the rows do not determine it",
+                                 options.threads, control);
   curve.limit = fit.stage.estimates[0].estimate;
   curve.rate = fit.stage.estimates[1].estimate;
   for (Estimate* e : {&curve.limit, &curve.rate}) {
@@ -102,6 +99,7 @@ SaturationProblem saturation_problem(const std::string& test, const std::string&
   double limit = 0, rate = 0;
   guess(eps_dev, value, start, limit, rate);
   SaturationProblem problem;
+  problem.loss = options.loss;
   problem.parameters = {{"limit", limit, 0, kLargestLimit, 0.1}, {"rate", rate, 1e-3, kLargestRate, 20}};
   const RowWeights rows = shear_window(eps_dev, options);
   const int n = static_cast<int>(rows.row.size());

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "fit/stages/density_series.hpp"
-#include "fit/stages/measured_state.hpp"
-#include "fit/stages/shear_window.hpp"
+#include "fit/data/shear_rows.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::fit {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 #include "model/law.hpp"
 
 namespace grainlaw::fit {

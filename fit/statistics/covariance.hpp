@@ -1,20 +1,13 @@
 #pragma once
 // Standard errors of a least-squares fit of rows that are not independent. Packings are the unit of chance: rows of one run
 // are correlated, and runs of one packing share the packing (the naive (J^T J)^-1 covers a third of what it promises).
-// Cluster-robust sandwich over packings c, J and r weighted, H = J^T J:
-//   V = sum_c psi_c psi_c^T,   psi_c = -A^+ J_c^T (1 - J_c H^+ J_c^T)^(-1/2) r_c
-// A = H + S is the Hessian of the cost, S what the misfits of a model that does not hold exactly add to it (curvature.hpp).
-// psi_c, the influence of packing c, is what it moved the parameters by. The power of the leverage undoes what a packing's
-// own share in the fit takes from its residual ("CR2"). For G packings that share alike it is the factor G/(G-1) in V,
-// which then is the variance of the mean of G fits, one to each packing; where a parameter rests on few of many packings it
-// is the factor of those few.
-// From few packings V itself is uncertain: an interval reaches over t standard errors, t by Student with the degrees of
-// freedom of Satterthwaite's approximation (G - 1 for packings that share alike),
-//   n_k = (sum_c g_cc)^2/sum_cd g_cd^2,   g = covariance over packings of the terms of V_kk for independent rows.
-// Source: Bell & McCaffrey, Survey Methodology 28 (2002) 169; the sandwich is Liang & Zeger, Biometrika 73 (1986) 13.
+// V = sum_c psi_c psi_c^T over packings c, psi_c the influence of packing c: what it moved the parameters by. From few
+// packings V itself is uncertain, so that an interval reaches over Student's t of some degrees of freedom. Formulas and
+// sources: docs/theory/fit.md, sections Covariance over packings and Degrees of freedom.
 //
-// Identifiability: singular values of J with columns scaled to one. A column that is zero, or takes part in a null
-// direction, belongs to a parameter that the rows do not determine.
+// J is the Jacobian, weighted; H = J^T J; A = H + S the Hessian of the cost, S by the misfits (curvature()). Identifiability:
+// by the singular values of J with columns scaled to one. A column that is zero, or takes part in a null direction, belongs
+// to a parameter that the rows do not determine.
 
 #include <Eigen/Core>
 #include <vector>

@@ -17,17 +17,17 @@ bool reads(const DensityCurve& curve, std::string_view parameter) {
 
 }  // namespace
 
-double standard_error(const Calibration& calibration, const DensityCurve& curve, double nu) {
+double standard_error(const CalibratedLaw& law, const DensityCurve& curve, double nu) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(kParameterCount);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     if (!reads(curve, parameter_table()[i].name)) continue;
-    const Estimate& estimate = calibration.estimates[i];
+    const Estimate& estimate = law.estimates[i];
     const auto k = static_cast<Eigen::Index>(i);
-    const double error = std::sqrt(calibration.covariance(k, k));
+    const double error = std::sqrt(law.covariance(k, k));
     if (estimate.status == Status::fixed || estimate.status == Status::at_bound) continue;
     if (!(error > 0)) return std::numeric_limits<double>::quiet_NaN();
     const double step = kStepInErrors * error;
-    LawParameters<double> p = calibration.parameters;
+    LawParameters<double> p = law.parameters;
     double& x = *fields(p)[i];
     const double x_0 = x;
     x = x_0 + step;
@@ -35,7 +35,7 @@ double standard_error(const Calibration& calibration, const DensityCurve& curve,
     x = x_0 - step;
     gradient(k) = (above - curve.of(p, nu)) / (2 * step);
   }
-  return std::sqrt(gradient.dot(calibration.covariance * gradient));
+  return std::sqrt(gradient.dot(law.covariance * gradient));
 }
 
 }  // namespace grainlaw::fit

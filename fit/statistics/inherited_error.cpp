@@ -76,6 +76,17 @@ void widen(Eigen::MatrixXd& influence, Eigen::Index packings) {
   influence.rightCols(packings - before).setZero();
 }
 
+void add_errors(const StageFit& fit, FoundErrors& found) {
+  widen(found.influence, fit.influence.cols());
+  for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
+    const auto& [name, estimate] = fit.stage.estimates[k];
+    const auto i = static_cast<Eigen::Index>(parameter_index(name)), row = static_cast<Eigen::Index>(k);
+    found.degrees_of_freedom(i) = estimate.degrees_of_freedom;
+    found.influence.row(i).setZero();
+    if (row < fit.influence.rows()) found.influence.row(i).head(fit.influence.cols()) = fit.influence.row(row);
+  }
+}
+
 void inherit_error(const Eigen::VectorXd& slope, const Eigen::RowVectorXd& influence, double degrees_of_freedom,
                    StageFit& second) {
   const Solution& solution = second.solution;

@@ -1,14 +1,12 @@
 #pragma once
 // The error that a stage inherits from parameters of earlier stages that it takes as given, e.g. phi_c of Eq. (12) from nu_c
-// of Eq. (11): a little of nu_c is much of phi_c. A packing that moved the given parameters by psi_c moves those of the
-// stage by the response of its fit to the change of its gradient,
-//   psi_c += -A^+ d(J^T misfit)/d given psi_c(given),      A: covariance.hpp
-// and what both stages owe to the same packing adds up with its sign.
-// Source: two-step M-estimation, Newey & McFadden, Handbook of Econometrics IV (1994), section 6.
+// of Eq. (11): a little of nu_c is much of phi_c. A packing that moved the given parameters moves those of the stage by the
+// response of its fit, and what both stages owe to the same packing adds up with its sign: docs/theory/fit.md, section
+// Inherited errors.
 
 #include <functional>
 
-#include "fit/stages/stage_fit.hpp"
+#include "fit/statistics/stage_fit.hpp"
 #include "model/parameters.hpp"
 
 namespace grainlaw::fit {
@@ -24,6 +22,9 @@ FoundErrors no_errors();
 
 /// Adds columns of zeros for packings that did not take part, up to `packings` columns.
 void widen(Eigen::MatrixXd& influence, Eigen::Index packings);
+
+/// Takes over what a stage says of its parameters in place of what earlier ones said.
+void add_errors(const StageFit& fit, FoundErrors& found);
 
 /// Adds to the errors of `second` what it owes to one given parameter. `slope`: of each row of its misfit, its Jacobian
 /// unchanged; `influence`: of the packings on the parameter. Degrees of freedom: the smaller of its own and

@@ -13,7 +13,6 @@
 #include <numeric>
 
 #include "model/vocabulary/error.hpp"
-#include "model/parameters.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -23,6 +22,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 constexpr double kGradientCosine = 1e-5;  // |cos| between the residual and every column of J at a true minimum
 constexpr double kExact = 1e-9;           // misfit over data below which the cosine is that of rounding errors
 constexpr double kOnBound = 1e-7;         // distance in units of the parameter's scale
+constexpr double kCurvatureStep = 1e-6;   // of a parameter's scale
 constexpr double kSettled = 1e-9;         // relative decrease of the cost over a whole round that is none
 
 /// All blocks as one cost function of x/scale.
@@ -201,14 +201,10 @@ ceres::Solver::Summary solve_round(Blocks& cost, const std::vector<FreeParameter
 
 }  // namespace
 
-FreeParameter free_parameter(const std::string& name, double start) {
-  const ParameterInfo& info = parameter_table()[parameter_index(name)];
-  const double scale = std::max(std::abs(start), 1e-3 * (info.upper - info.lower));
-  return {name, start, info.lower, info.upper, scale};
-}
-
-Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks, int threads,
-               const std::string& stage, const RunControl& control, const SolverEffort& effort) {
+Solution solve(const Problem& problem, int threads, const std::string& stage, const RunControl& control,
+               const SolverEffort& effort) {
+  const std::vector<FreeParameter>& parameters = problem.parameters;
+  const std::vector<ResidualBlock>& blocks = problem.blocks;
   if (control.stop.stop_requested()) throw Interrupted("fit: stopped on request");
   const auto begin = std::chrono::steady_clock::now();
   const auto n = static_cast<Eigen::Index>(parameters.size());
@@ -272,6 +268,35 @@ Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<R
   }
   solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solution;
+}
+
+Eigen::MatrixXd curvature(const Problem& problem, const Solution& solution, int threads) {
+  const Eigen::Index n = solution.x.size(), rows = solution.misfit.size();
+  const Eigen::VectorXd w2r = solution.weight.cwiseAbs2().cwiseProduct(solution.misfit);
+  const Eigen::VectorXd here = solution.jacobian.transpose() * w2r;
+  RowMajor jacobian(rows, n);
+  Eigen::VectorXd misfit(rows);
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
+  std::vector<bool> bent(static_cast<std::size_t>(n));  // defined next to the solution
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const FreeParameter& p = problem.parameters[static_cast<std::size_t>(k)];
+    if (solution.at_bound[static_cast<std::size_t>(k)]) continue;
+    Eigen::VectorXd x = solution.x;
+    x(k) += kCurvatureStep * p.scale;
+    if (x(k) > p.upper) x(k) = solution.x(k) - kCurvatureStep * p.scale;
+    if (!fit::evaluate(problem.blocks, x, threads, misfit.data(), jacobian.data())) continue;
+    bent[static_cast<std::size_t>(k)] = true;
+    S.col(k) = (jacobian.transpose() * w2r - here) / (x(k) - solution.x(k));
+  }
+  const Eigen::VectorXd held = solution.weight.cwiseAbs2().cwiseProduct((1 - solution.pull_slope.array()).matrix());
+  const Eigen::MatrixXd unbent = solution.jacobian.transpose() * held.asDiagonal() * solution.jacobian;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (bent[static_cast<std::size_t>(k)]) S.col(k) -= unbent.col(k);
+  }
+  for (Eigen::Index k = 0; k < n; ++k) {
+    if (!bent[static_cast<std::size_t>(k)]) S.row(k).setZero();
+  }
+  return (S + S.transpose()) / 2;
 }
 
 }  // namespace grainlaw::fit

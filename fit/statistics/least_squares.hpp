@@ -7,30 +7,21 @@
 #include <string>
 #include <vector>
 
-#include "fit/statistics/residual_block.hpp"
+#include "fit/statistics/problem.hpp"
 #include "model/vocabulary/run_control.hpp"
 
 namespace grainlaw::fit {
-
-struct FreeParameter {
-  std::string name;             ///< of parameter_table()
-  double start = 0;             ///< moved into the bounds when outside
-  double lower = 0, upper = 0;  ///< both attainable
-  double scale = 1;             ///< typical magnitude > 0; the solver sees x/scale
-};
-
-/// The parameter `name` of the table with its bounds, starting from `start`.
-FreeParameter free_parameter(const std::string& name, double start);
 
 struct Solution {
   Eigen::VectorXd x;
   std::vector<bool> at_bound;  ///< per parameter
   Eigen::VectorXd misfit;      ///< model - data of all rows of all blocks in order, unweighted
   Eigen::VectorXd weight;      ///< of these rows
-  Eigen::VectorXd pull_slope;  ///< of these rows: d(w^2 misfit) over w^2 d misfit; 1, or 0 where Huber's loss holds the pull
-  Eigen::MatrixXd jacobian;    ///< d misfit/dx
-  Eigen::MatrixXd curvature;   ///< fit/statistics/curvature.hpp, set by fit_stage
-  std::vector<int> cluster;    ///< of these rows
+  Eigen::VectorXd
+      pull_slope;  ///< of these rows: d(w^2 misfit) over w^2 d misfit; 1, or 0 where Huber's loss holds the pull
+  Eigen::MatrixXd jacobian;   ///< d misfit/dx
+  Eigen::MatrixXd curvature;  ///< curvature(), set by fit_stage
+  std::vector<int> cluster;   ///< of these rows
   double initial_cost = 0, final_cost = 0;
   int iterations = 0;
   std::string termination;  ///< Ceres's word and message
@@ -44,9 +35,15 @@ struct SolverEffort {
   int rounds = 60, iterations = 8;
 };
 
-/// A problem that cannot be evaluated at its start, or is solved badly, returns with converged = false and says so in
+/// The least squares of the problem, whatever its loss. A problem that cannot be evaluated at its start, or is solved badly, returns with converged = false and says so in
 /// `termination`. Throws Interrupted.
-Solution solve(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks, int threads,
-               const std::string& stage, const RunControl& control, const SolverEffort& effort = {});
+Solution solve(const Problem& problem, int threads, const std::string& stage, const RunControl& control,
+               const SolverEffort& effort = {});
+
+/// What J^T W^2 J leaves out of the Hessian of the cost at the solution: misfits of a model that does not hold exactly bend
+/// the cost, and rows that Huber's loss holds do not (docs/theory/fit.md, section Covariance over packings). Parameters x
+/// parameters, by forward differences of the exact Jacobian, to about 1e-6 of it. Rows and columns of parameters at a bound, or
+/// where the model is not defined next to the solution, are zero. Costs a Jacobian for each parameter.
+Eigen::MatrixXd curvature(const Problem& problem, const Solution& solution, int threads);
 
 }  // namespace grainlaw::fit

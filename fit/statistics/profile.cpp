@@ -45,18 +45,22 @@ std::vector<ResidualBlock> holding(const std::vector<ResidualBlock>& blocks, std
 /// The cost as a function of one parameter, the others fitted again from where they were last.
 class ProfiledCost {
  public:
-  ProfiledCost(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks,
-               const StageFit& fit, std::size_t k, int threads, const RunControl& control)
-      : blocks_(blocks), k_(k), n_(parameters.size()), threads_(threads), control_(control), others_(parameters) {
+  ProfiledCost(const Problem& problem, const StageFit& fit, std::size_t k, int threads, const RunControl& control)
+      : blocks_(problem.blocks),
+        k_(k),
+        n_(problem.parameters.size()),
+        threads_(threads),
+        control_(control),
+        others_(problem.parameters),
+        name_(problem.parameters[k].name) {
     for (std::size_t j = 0; j < n_; ++j) others_[j].start = fit.solution.x(static_cast<Eigen::Index>(j));
     others_.erase(others_.begin() + static_cast<std::ptrdiff_t>(k));
-    name_ = parameters[k].name;
   }
 
   /// NaN where the model is not defined.
   double operator()(double value) {
     const Solution solution =
-        solve(others_, holding(blocks_, n_, k_, value), threads_, "profile of " + name_, control_, kRefit);
+        solve({others_, holding(blocks_, n_, k_, value)}, threads_, "profile of " + name_, control_, kRefit);
     if (!solution.defined) return kUndefined;
     for (std::size_t j = 0; j < others_.size(); ++j) others_[j].start = solution.x(static_cast<Eigen::Index>(j));
     return solution.final_cost;
@@ -181,8 +185,8 @@ std::string doubt(const Estimate& estimate) {
   return "";
 }
 
-void profile_doubtful(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks,
-                      int threads, const RunControl& control, StageFit& fit) {
+void profile_doubtful(const Problem& problem, int threads, const RunControl& control, StageFit& fit) {
+  const std::vector<FreeParameter>& parameters = problem.parameters;
   const Solution& solution = fit.solution;
   if (!solution.defined || parameters.size() < 2) return;
   const Inflation inflation = inflation_of(fit);
@@ -197,14 +201,14 @@ void profile_doubtful(const std::vector<FreeParameter>& parameters, const std::v
     const double t = student_95(std::isnan(half) ? inflation.degrees_of_freedom : estimate.degrees_of_freedom);
     const double unit = t * t * (std::isnan(half) ? inflation.mean : inflation.own(i)) / 2;  // of the cost, D = t^2
     const double step = std::isnan(half) ? p.scale / 2 : half;
-    const ProfiledCost cost(parameters, blocks, fit, k, threads, control);
+    const ProfiledCost cost(problem, fit, k, threads, control);
     profile.points.push_back({best, 0});
     if (best > p.lower) profile.lower = end_of(cost, p, best, step, p.lower, solution.final_cost, unit, profile.points);
     if (best < p.upper) profile.upper = end_of(cost, p, best, step, p.upper, solution.final_cost, unit, profile.points);
     std::sort(profile.points.begin(), profile.points.end(),
               [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });
     profile.experiment = estimate.note;
-    if (estimate.status != Status::not_identified) profile.experiment = most_telling_test(blocks, solution, k);
+    if (estimate.status != Status::not_identified) profile.experiment = most_telling_test(problem.blocks, solution, k);
     fit.stage.profiles.push_back(profile);
   }
 }

@@ -10,7 +10,7 @@ failures=0
 
 clean_tree() {
   rm -rf "${tree:?}"/*
-  mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests,fit,predict,app,tests/unit}
+  mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests,fit/{data,statistics,stages},predict,app,tests/unit}
   echo '#include <Eigen/Core>' >"$tree/model/vocabulary/tensor.hpp"
   echo '#include "model/vocabulary/tensor.hpp"' >"$tree/model/vocabulary/path.hpp"
   echo '#include "model/vocabulary/path.hpp"' >"$tree/model/files/path_file.hpp"
@@ -20,7 +20,10 @@ clean_tree() {
   printf '#include "dem/engine/packing.hpp"\n#include <vector>\n' >"$tree/dem/engine/packing.cpp"
   echo '#include "dem/engine/lanes/lanes.hpp"' >"$tree/dem/statics/relax.hpp"
   echo '#include "dem/statics/relax.hpp"' >"$tree/dem/element_tests/drive.hpp"
-  printf '#include "model/law.hpp"\n#include <ceres/ceres.h>\n' >"$tree/fit/calibrate.cpp"
+  echo '#include "model/law.hpp"' >"$tree/fit/statistics/problem.hpp"
+  echo '#include "fit/statistics/problem.hpp"' >"$tree/fit/data/options.hpp"
+  printf '#include "fit/data/options.hpp"\n#include "fit/statistics/problem.hpp"\n' >"$tree/fit/stages/stage.hpp"
+  printf '#include "fit/stages/stage.hpp"\n#include <ceres/ceres.h>\n' >"$tree/fit/calibrate.cpp"
   printf '#include "model/law.hpp"\n' >"$tree/fit/calibrate.hpp"
   printf '#include "model/law.hpp"\n#include <cvodes/cvodes.h>\n' >"$tree/predict/predict.cpp"
   printf '#include "fit/calibrate.hpp"\n#include "dem/engine/packing.hpp"\n#include <grainlaw_build_info.hpp>\n' \
@@ -63,6 +66,10 @@ sow dem/engine/lanes/lanes.hpp '"dem/element_tests/drive.hpp"' 'dem/engine must 
 sow dem/statics/relax.hpp '"dem/element_tests/drive.hpp"' 'dem/statics must not include dem/element_tests'
 sow model/vocabulary/path.hpp '"model/law.hpp"' 'model/vocabulary must not include model'
 sow model/files/path_file.hpp '"model/law.hpp"' 'model/files must not include model'
+sow fit/statistics/problem.hpp '"fit/stages/stage.hpp"' 'fit/statistics must not include fit/stages'
+sow fit/statistics/problem.hpp '"fit/data/options.hpp"' 'fit/statistics must not include fit/data'
+sow fit/data/options.hpp '"fit/stages/stage.hpp"' 'fit/data must not include fit/stages'
+sow fit/stages/stage.hpp '"fit/calibrate.hpp"' 'fit/stages must not include fit '
 sow fit/calibrate.cpp '"predict/predict.hpp"' 'fit must not include predict'
 sow predict/predict.cpp '"fit/calibrate.hpp"' 'predict must not include fit'
 sow fit/calibrate.cpp '"dem/engine/packing.hpp"' 'fit must not include dem'

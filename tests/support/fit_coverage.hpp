@@ -18,7 +18,9 @@
 
 #include "fit/calibrate.hpp"
 #include "fit/stages/density_fit.hpp"
+#include "fit/staged_laws.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/table.hpp"
 
@@ -171,11 +173,10 @@ inline Coverage coverage_of_isotropic_laws(const CoverageStudy& study) {
     RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation, study.packing_scatter);
     for (TestRecord& test : tests) noise.add_to(test);
     const auto series = fit::isotropic_series(fit::check_and_sort(tests), {});
-    StateLaw<double> law = truth.isotropic;
-    const auto fits = fit::fit_state_law("", series, "F2", law, choices, {});
-    for (const fit::StageFit& fit : fits) coverage.add(fit.stage.estimates, truth);
-    coverage.add(fit::fit_overlap(series, "F2", fits.back(), truth.overlap_D, choices, {}).stage.estimates, truth);
-    coverage.add(fit::fit_fabric_trace(series, "F2", truth.fabric_g3, choices, {}).stage.estimates, truth);
+    fit::Calibration found = fit::nothing_known();
+    found.law.parameters = truth;
+    fit::fit_unloading_laws("F2", series, found, choices, {});
+    for (const fit::Stage& stage : found.stages) coverage.add(stage.estimates, truth);
   }
   return coverage;
 }
@@ -200,19 +201,19 @@ inline Coverage coverage_of_steady_laws(const CoverageStudy& study) {
         series.push_back({fmt::format("d2-{}-{}", nu, packing), packing, 0, {point}});
       }
     }
-    StateLaw<double> found = law;
-    for (const fit::StageFit& fit : fit::fit_state_law("steady_", series, "F2", found, {}, {}))
+    LawParameters<double> found = truth;
+    for (const fit::StageFit& fit : run_stages(fit::state_law_stages(fit::kSteadyLaw, series, "F2"), found))
       coverage.add(fit.stage.estimates, truth);
   }
   return coverage;
 }
 
 /// Of each parameter over the calibrations.
-inline LawParameters<double> medians(const std::vector<fit::Calibration>& found) {
+inline LawParameters<double> medians(const std::vector<CalibratedLaw>& found) {
   LawParameters<double> middle;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     std::vector<double> values;
-    for (const fit::Calibration& c : found) values.push_back(c.estimates[i].value);
+    for (const CalibratedLaw& law : found) values.push_back(law.estimates[i].value);
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), at, values.end());
     *fields(middle)[i] = *at;
@@ -250,8 +251,8 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   calibration.max_step = 1e-2;
   calibration.stiffness_window = 0.04;
   calibration.loss = study.loss;
-  LawParameters<double> target = fit::calibrate(clean, calibration, {}).parameters;
-  std::vector<fit::Calibration> found(static_cast<std::size_t>(study.sets));
+  LawParameters<double> target = fit::calibrate(clean, calibration, {}).law.parameters;
+  std::vector<CalibratedLaw> found(static_cast<std::size_t>(study.sets));
   std::atomic<int> next = 0;
   const auto work = [&] {
     for (int k = next++; k < study.sets; k = next++) {
@@ -259,8 +260,7 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
       RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation,
                      study.packing_scatter);
       for (TestRecord& test : tests) noise.add_to(test);
-      fit::Calibration c = fit::calibrate(tests, calibration, {});
-      found[static_cast<std::size_t>(k)].estimates = std::move(c.estimates);
+      found[static_cast<std::size_t>(k)] = fit::calibrate(tests, calibration, {}).law;
     }
   };
   {
@@ -269,12 +269,12 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   }
   if (study.loss == fit::Loss::huber) target = medians(found);
   Coverage coverage;
-  for (const fit::Calibration& c : found) {
+  for (const CalibratedLaw& law : found) {
     for (std::size_t i = 0; i < kParameterCount; ++i) {
       const std::string name = parameter_table()[i].name;
       // Not fitted:
       if (name == "shear.nu_c" || name == "memory.m" || name == "memory.a_P" || name == "anisotropy.a0") continue;
-      coverage.add({name, c.estimates[i]}, target);
+      coverage.add({name, law.estimates[i]}, target);
     }
   }
   return coverage;

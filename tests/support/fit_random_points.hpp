@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "fit/statistics/least_squares.hpp"
-#include "fit/statistics/residual_block.hpp"
+#include "fit/statistics/problem.hpp"
 #include "tests/support/derivative_check.hpp"
 
 namespace grainlaw::testing {

@@ -7,6 +7,7 @@
 
 #include "fit/stages/density_fit.hpp"
 #include "fit/stages/evolution_fit.hpp"
+#include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::testing {
@@ -43,7 +44,8 @@ inline RecoveryCount recover_state_law(int starts, std::uint64_t seed) {
   FarStart far(seed);
   RecoveryCount count;
   for (; count.starts < starts; ++count.starts) {
-    StateLaw<double> law = truth.isotropic;
+    LawParameters<double> found = truth;
+    StateLaw<double>& law = found.isotropic;
     for (double* p : {&law.coordination.C1, &law.coordination.alpha, &law.rattlers.phi_c, &law.rattlers.phi_v,
                       &law.pressure.p0, &law.pressure.gamma_p}) {
       *p = far.factor(*p);
@@ -51,11 +53,9 @@ inline RecoveryCount recover_state_law(int starts, std::uint64_t seed) {
     law.coordination.nu_c = far.density(law.coordination.nu_c);
     law.pressure.nu_c = far.density(law.pressure.nu_c);
     bool converged = true;
-    for (const fit::StageFit& fit : fit::fit_state_law("", series, "F1", law, {}, {})) {
+    for (const fit::StageFit& fit : run_stages(fit::state_law_stages(fit::kUnloadingLaw, series, "F1"), found)) {
       converged = converged && fit.stage.converged;
     }
-    LawParameters<double> found = truth;
-    found.isotropic = law;
     const auto a = fields(found);
     const auto b = fields(truth);
     bool recovered = true;
@@ -101,7 +101,7 @@ inline RecoveryCount recover_evolution(int starts, std::uint64_t seed) {
     law.isotropic.pressure.gamma_p = far.factor(law.isotropic.pressure.gamma_p);
     law.isotropic.pressure.nu_c = far.density(law.isotropic.pressure.nu_c);
     law.anisotropy.a2 = far.factor(law.anisotropy.a2);
-    const fit::StageFit fit = fit::fit_evolution(trajectories, law, {}, calibration, {});
+    const fit::StageFit fit = run_stage(fit::evolution_stage(trajectories, {}, calibration), law, calibration, {});
     bool recovered = true;
     for (const fit::NamedEstimate& e : fit.stage.estimates) {
       const std::size_t i = parameter_index(e.name);

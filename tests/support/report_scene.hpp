@@ -70,7 +70,7 @@ inline PathSegment segment_of(Mode mode, ExtentKind kind, double extent, bool re
   return {mode, direction_of(mode, "xyz", reverse), kind, extent};
 }
 
-inline fit::Estimate estimate_of(double value, double error, fit::Status status = fit::Status::fitted) {
+inline Estimate estimate_of(double value, double error, Status status = Status::fitted) {
   return {value, error, status, ""};
 }
 
@@ -116,9 +116,9 @@ inline predict::Prediction predicted_at(const TestRecord& test, const LawParamet
   return prediction;
 }
 
-inline app::PredictionFolder make_prediction(const std::string& name, double nu, const LawParameters<double>& p,
+inline predict::PredictionFolder make_prediction(const std::string& name, double nu, const LawParameters<double>& p,
                                              std::mt19937_64& generator) {
-  app::PredictionFolder folder;
+  predict::PredictionFolder folder;
   folder.name = name;
   folder.dem.emplace();
   for (const std::uint64_t seed : {11u, 12u}) {
@@ -127,13 +127,13 @@ inline app::PredictionFolder make_prediction(const std::string& name, double nu,
     fill_rows(test, p, 150, generator);
     for (const Rung model : {Rung::reduced, Rung::evolution}) {
       const std::string file = to_string(model) + "-law-seed" + std::to_string(seed) + ".csv";
-      folder.curves.push_back({model, app::Initial::law, seed, file, predicted_at(test, p, model)});
+      folder.curves.push_back({model, predict::Initial::law, seed, file, predicted_at(test, p, model)});
       predict::Comparison comparison{test.name, {}};
       for (const char* quantity : {"P_star", "s_par", "F_par"}) {
         comparison.quantities.push_back({quantity, 300, -0.0012, 0.0034, 0.028, -0.009, 0.12, 0.78});
       }
-      folder.comparisons.push_back({model, app::Initial::law, seed, comparison});
-      if (seed == 12) folder.comparisons.push_back({model, app::Initial::law, std::nullopt, comparison});
+      folder.comparisons.push_back({model, predict::Initial::law, seed, comparison});
+      if (seed == 12) folder.comparisons.push_back({model, predict::Initial::law, std::nullopt, comparison});
     }
     folder.path = test.path;
     folder.dem->tests.push_back({std::move(test), "", "", {}, {}});
@@ -147,18 +147,18 @@ inline app::report::ReportInput report_scene() {
   const LawParameters<double> p = published_parameters();
   app::report::ReportInput input;
   fit::Calibration& c = input.calibration;
-  c.parameters = p;
-  c.converged = true;
-  c.nu_min = 0.68;
-  c.nu_max = 0.82;
-  c.eps_dev_max = 0.25;
+  c.law.parameters = p;
+  c.law.converged = true;
+  c.law.range.nu_min = 0.68;
+  c.law.range.nu_max = 0.82;
+  c.law.range.eps_dev_max = 0.25;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const double value = *fields(p)[i];
-    c.estimates[i] = estimate_of(value * 1.01, 0.03 * std::abs(value) + 1e-4);
+    c.law.estimates[i] = estimate_of(value * 1.01, 0.03 * std::abs(value) + 1e-4);
   }
-  c.estimates[parameter_index("shear.nu_c")] = estimate_of(0.6653, std::nan(""), fit::Status::fixed);
-  c.estimates[parameter_index("anisotropy.a0")] = {0, std::nan(""), fit::Status::not_identified,
-                                                   "not part of this coupling"};
+  c.law.estimates[parameter_index("shear.nu_c")] = estimate_of(0.6653, std::nan(""), Status::fixed);
+  c.law.estimates[parameter_index("anisotropy.a0")] = {0, std::nan(""), Status::not_identified,
+                                                       "not part of this coupling"};
   fit::Stage evolution;
   evolution.name = "evolution";
   evolution.window = "all calibration trajectories";

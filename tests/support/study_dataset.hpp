@@ -8,8 +8,8 @@ namespace grainlaw::testing {
 
 /// Data of packings 1, 2, 3 whose fabric limit (Eq. (20), both its terms) is `factor` times the published one, times
 /// (1 + scatter (seed - 2)). Every run took 10 steps of 100 spheres and 2.5 s.
-inline app::Dataset study_dataset(double factor, double scatter, SyntheticOptions options = {{0.70, 0.78}}) {
-  app::Dataset all;
+inline Dataset study_dataset(double factor, double scatter, SyntheticOptions options = {{0.70, 0.78}}) {
+  Dataset all;
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     LawParameters<double> law = synthetic_truth();
     const double f = factor * (1 + scatter * (static_cast<double>(seed) - 2));

@@ -6,7 +6,7 @@
 
 #include "app/exit_code.hpp"
 #include "chain/planning/precision_plan.hpp"
-#include "fit/outcome.hpp"
+#include "model/calibrated_law.hpp"
 #include "model/files/column.hpp"
 #include "model/files/schema.hpp"
 #include "model/vocabulary/probe_row.hpp"
@@ -177,7 +177,7 @@ TEST(Schemas, AllowTheNamesOfTheEnums) {
   expect_names<Mode>(Schema::path, "/properties/segments/items/properties/mode", {"tensor"});
   expect_names<Condition::Quantity>(Schema::path,
                                     "/properties/segments/items/properties/free/properties/volume/properties/quantity");
-  expect_names<fit::Status>(Schema::parameters, "/properties/parameters/additionalProperties/properties/status");
+  expect_names<Status>(Schema::parameters, "/properties/parameters/additionalProperties/properties/status");
   expect_names<Rung>(Schema::study_settings, "/properties/settings/items/properties/model");
   expect_names<chain::Cause>(Schema::plan,
                              "/properties/pilot/properties/quantities/items/properties/biases/items/properties/cause");

@@ -1,5 +1,7 @@
 #include "dem/runs/job_list.hpp"
 
+#include "app/terminal/progress_printer.hpp"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -24,7 +26,7 @@ TEST(JobList, RunsEveryJobOnceAndAfterWhatItNeeds) {
     Quiet quiet;
     std::mutex mutex;
     std::vector<int> order;
-    std::vector<Job> jobs;
+    std::vector<dem::Job> jobs;
     for (int i = 0; i < 20; ++i) {
       jobs.push_back({std::to_string(i), 1,
                       i >= 3 ? std::optional<std::size_t>(static_cast<std::size_t>(i % 3)) : std::nullopt,
@@ -45,7 +47,7 @@ TEST(JobList, RunsEveryJobOnceAndAfterWhatItNeeds) {
 TEST(JobList, SharesTheThreads) {
   Quiet quiet;
   std::atomic<int> in_use = 0, most = 0, given = 0;
-  std::vector<Job> jobs;
+  std::vector<dem::Job> jobs;
   for (int i = 0; i < 6; ++i) {
     jobs.push_back({"job", 1, std::nullopt, [&](int threads, const RunControl&) {
                       const int now = in_use += threads;
@@ -66,7 +68,7 @@ TEST(JobList, SharesTheThreads) {
 TEST(JobList, StopsTheOthersWhenOneFailsAndReportsThatOne) {
   Quiet quiet;
   std::atomic<int> started = 0;
-  std::vector<Job> jobs;
+  std::vector<dem::Job> jobs;
   jobs.push_back({"waits", 1, std::nullopt, [&](int, const RunControl& control) {
                     ++started;
                     while (!control.stop.stop_requested()) std::this_thread::sleep_for(1ms);
@@ -90,7 +92,7 @@ TEST(JobList, StopsOnRequest) {
   Quiet quiet;
   std::stop_source stop;
   std::atomic<int> finished = 0;
-  std::vector<Job> jobs;
+  std::vector<dem::Job> jobs;
   for (int i = 0; i < 4; ++i) {
     jobs.push_back({"job", 1, std::nullopt, [&, i](int, const RunControl& control) {
                       if (i == 0) {

@@ -3,11 +3,12 @@
 #include <cmath>
 #include <cstring>
 
+#include "model/parameters_file.hpp"
+#include "fit/calibrate.hpp"
 #include "model/files/column.hpp"
 #include "model/files/dataset.hpp"
-#include "chain/parameters_file.hpp"
-#include "predict/prediction_series.hpp"
 #include "model/files/series_csv.hpp"
+#include "predict/prediction_series.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/german_locale.hpp"
 #include "tests/support/synthetic_dataset.hpp"
@@ -41,21 +42,21 @@ std::vector<TestRecord> records() {
   return all;
 }
 
-predict::Prediction predicted(const fit::Calibration& calibration) {
+predict::Prediction predicted(const CalibratedLaw& law) {
   const Path path{0.7, Branch::unloading, {{Mode::UNI, direction_of(Mode::UNI), ExtentKind::target_nu, 0.8}}};
   const auto segments = resolve(path);
-  return predict::predict(Rung::evolution, calibration.parameters, calibration.coupling, segments,
-                          predict::state_from_law(calibration.parameters, path.nu),
-                          predict::uniform_points(segments, 50), {}, {}, {});
+  return predict::predict(Rung::evolution, law.parameters, law.coupling, segments,
+                          predict::state_from_law(law.parameters, path.nu), predict::uniform_points(segments, 50), {},
+                          {}, {});
 }
 
 class Locale : public testing::TemporaryFolder {};
 
 TEST_F(Locale, F12KeepsEveryDouble) {
   const std::vector<TestRecord> tests = records();
-  const fit::Calibration fitted = fit::calibrate(tests, {}, {});
+  const CalibratedLaw fitted = fit::calibrate(tests, {}, {}).law;
   const predict::Prediction before = predicted(fitted);
-  chain::write_parameters(folder_ / "plain.json", {fitted, "", {}});
+  write_parameters(folder_ / "plain.json", {fitted, {}});
   int count = 0;
   {
     const GermanLocale german(folder_);
@@ -73,15 +74,15 @@ TEST_F(Locale, F12KeepsEveryDouble) {
     for (const DatasetTest& test : read_dataset(folder_).tests) read.push_back(test.record);
     for (std::size_t i = 0; i < tests.size(); ++i)
       count += differing(read[i].rows, tests[i].rows, columns_of<Observation>());
-    const fit::Calibration again = fit::calibrate(read, {}, {});
+    const CalibratedLaw again = fit::calibrate(read, {}, {}).law;
 
     // parameters: disk and back, then the prediction
-    chain::write_parameters(folder_ / "parameters.json", {again, "", {}});
+    write_parameters(folder_ / "parameters.json", {again, {}});
     EXPECT_EQ(content(folder_ / "parameters.json"), content(folder_ / "plain.json"));
-    const fit::Calibration loaded = chain::read_parameters(folder_ / "parameters.json").calibration;
+    const CalibratedLaw loaded = read_parameters(folder_ / "parameters.json").law;
     const auto a = fields(fitted.parameters), b = fields(loaded.parameters);
     for (std::size_t i = 0; i < kParameterCount; ++i) {
-      if (fitted.estimates[i].status == fit::Status::not_identified) continue;
+      if (fitted.estimates[i].status == Status::not_identified) continue;
       count += differ(*a[i], *b[i]) ? 1 : 0;
     }
     const predict::Prediction after = predicted(loaded);

@@ -35,7 +35,7 @@ ReportInput scene_of_modes() {
   TestRecord shear = test::make_test("D2-loading", 1, 0.70, {test::segment_of(Mode::D2, ExtentKind::eps_dev, 0.25)});
   cycle.path.branch = shear.path.branch = Branch::loading;
   for (TestRecord* test : {&cycle, &shear}) {
-    test::fill_rows(*test, input.calibration.parameters, 90, generator);
+    test::fill_rows(*test, input.calibration.law.parameters, 90, generator);
     input.tests.push_back(*test);
     input.costs.push_back({});
   }

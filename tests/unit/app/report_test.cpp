@@ -8,13 +8,13 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/files/calibration_file.hpp"
-#include "model/files/dataset.hpp"
-#include "chain/parameters_file.hpp"
-#include "model/files/series_csv.hpp"
-#include "model/files/output_folder.hpp"
 #include "app/report/dem_series.hpp"
 #include "app/report/report_input.hpp"
+#include "fit/calibration_file.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/output_folder.hpp"
+#include "model/files/series_csv.hpp"
+#include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/report_scene.hpp"
 #include "tests/support/well_formed.hpp"
@@ -45,9 +45,10 @@ class ReportFolder : public ::testing::Test {
     fs::remove_all(dir_);
     report::ReportInput scene = test::report_scene();
     const Dataset dataset = write_tests(dir_ / "dataset", scene.tests);
-    scene.calibration.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
-    chain::write_parameters(dir_ / "parameters.json", {scene.calibration, dataset.digest, Json{{"version", "0.1.0"}}});
-    write_calibration(dir_ / "calibration.json", scene.calibration, {}, {}, dataset.digest, {{"version", "0.1.0"}});
+    scene.calibration.law.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
+    scene.calibration.law.dataset_digest = dataset.digest;
+    write_parameters(dir_ / "parameters.json", {scene.calibration.law, Json{{"version", "0.1.0"}}});
+    fit::write_calibration(dir_ / "calibration.json", scene.calibration, {}, {}, {{"version", "0.1.0"}});
     for (predict::PredictionFolder& prediction : scene.predictions) {
       const fs::path folder = dir_ / "predictions" / prediction.name;
       prediction.dem = write_tests(folder / "dem", report::dem_records(prediction));
@@ -138,12 +139,12 @@ TEST_F(ReportFolder, EveryMissingFileNamesTheCommandThatMakesIt) {
 }
 
 TEST_F(ReportFolder, ParametersThatAreNotIdentifiedAreWordsAndDrawNoCurve) {
-  chain::ParametersFile parameters = chain::read_parameters(dir_ / "parameters.json");
+  ParametersFile parameters = read_parameters(dir_ / "parameters.json");
   for (const char* name : {"stress_ratio_max.alpha", "steady_pressure.p0"}) {
-    parameters.calibration.estimates[parameter_index(name)] = {std::nan(""), std::nan(""), fit::Status::not_identified,
-                                                               "one density"};
+    parameters.law.estimates[parameter_index(name)] = {std::nan(""), std::nan(""), Status::not_identified,
+                                                       "one density"};
   }
-  chain::write_parameters(dir_ / "parameters.json", parameters);
+  write_parameters(dir_ / "parameters.json", parameters);
   const std::string html = page();
   EXPECT_EQ(test::first_markup_error(html), "");
   EXPECT_NE(html.find("Eq. 20 not identified by these tests"), std::string::npos);
@@ -153,10 +154,10 @@ TEST_F(ReportFolder, ParametersThatAreNotIdentifiedAreWordsAndDrawNoCurve) {
 
 TEST_F(ReportFolder, WithoutPredictionsThePageNeedsAReason) {
   EXPECT_NE(message_without("predictions").find("holds no prediction"), std::string::npos);
-  chain::ParametersFile parameters = chain::read_parameters(dir_ / "parameters.json");
-  parameters.calibration.estimates[parameter_index("fabric_rate.Q_c")] = {std::nan(""), std::nan(""),
-                                                                          fit::Status::not_identified, "one density"};
-  chain::write_parameters(dir_ / "parameters.json", parameters);
+  ParametersFile parameters = read_parameters(dir_ / "parameters.json");
+  parameters.law.estimates[parameter_index("fabric_rate.Q_c")] = {std::nan(""), std::nan(""), Status::not_identified,
+                                                                  "one density"};
+  write_parameters(dir_ / "parameters.json", parameters);
   fs::remove_all(dir_ / "predictions");
   EXPECT_NE(page().find("No prediction can be made"), std::string::npos);
 }
@@ -177,9 +178,9 @@ TEST_F(ReportFolder, TheSummaryIsARectangleOfText) {
 }
 
 TEST_F(ReportFolder, AnotherDataSetThanTheFittedOneIsSaid) {
-  chain::ParametersFile parameters = chain::read_parameters(dir_ / "parameters.json");
-  parameters.dataset_digest[0] = parameters.dataset_digest[0] == '0' ? '1' : '0';
-  chain::write_parameters(dir_ / "parameters.json", parameters);
+  ParametersFile parameters = read_parameters(dir_ / "parameters.json");
+  parameters.law.dataset_digest[0] = parameters.law.dataset_digest[0] == '0' ? '1' : '0';
+  write_parameters(dir_ / "parameters.json", parameters);
   EXPECT_NE(page().find("another data set"), std::string::npos);
 }
 

@@ -100,8 +100,7 @@ TEST(SchemaCheck, KnowsTheWordsOfTheFit) {
   const Json& status =
       schema(Schema::parameters)["properties"]["parameters"]["additionalProperties"]["properties"]["status"]["enum"];
   std::vector<std::string> words;
-  for (const auto s :
-       {fit::Status::fitted, fit::Status::fixed, fit::Status::tied, fit::Status::at_bound, fit::Status::not_identified})
+  for (const auto s : {Status::fitted, Status::fixed, Status::tied, Status::at_bound, Status::not_identified})
     words.push_back(to_string(s));
   EXPECT_EQ(status, Json(words));
 }

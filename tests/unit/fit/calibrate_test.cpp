@@ -24,15 +24,17 @@ testing::SyntheticOptions noisy() {
   return options;
 }
 
-const Estimate& estimate(const Calibration& c, const std::string& name) { return c.estimates[parameter_index(name)]; }
+const Estimate& estimate(const Calibration& c, const std::string& name) {
+  return c.law.estimates[parameter_index(name)];
+}
 
 TEST(Calibrate, AgreesWithItselfAboutEveryParameter) {
   const Calibration c = calibrate(testing::synthetic_dataset(testing::synthetic_truth(), noisy()), {}, {});
-  EXPECT_TRUE(c.converged);
-  const auto value = fields(c.parameters);
+  EXPECT_TRUE(c.law.converged);
+  const auto value = fields(c.law.parameters);
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const Estimate& e = c.estimates[i];
+    const Estimate& e = c.law.estimates[i];
     const char* name = parameter_table()[i].name;
     const bool has_error = std::isfinite(e.standard_error);
     EXPECT_EQ(has_error, e.status == Status::fitted || e.status == Status::tied) << name << " " << e.note;
@@ -40,18 +42,19 @@ TEST(Calibrate, AgreesWithItselfAboutEveryParameter) {
       EXPECT_EQ(e.value, *value[i]) << name;
     else
       EXPECT_FALSE(e.note.empty()) << name;
-    EXPECT_NEAR(c.covariance(k, k), has_error ? e.standard_error * e.standard_error : 0, 1e-12 * c.covariance(k, k))
+    EXPECT_NEAR(c.law.covariance(k, k), has_error ? e.standard_error * e.standard_error : 0,
+                1e-12 * c.law.covariance(k, k))
         << name;
   }
-  EXPECT_NEAR((c.covariance - c.covariance.transpose()).norm(), 0, 1e-12 * c.covariance.norm());
+  EXPECT_NEAR((c.law.covariance - c.law.covariance.transpose()).norm(), 0, 1e-12 * c.law.covariance.norm());
   EXPECT_EQ(estimate(c, "shear.nu_c").status, Status::fixed);
   EXPECT_EQ(estimate(c, "anisotropy.a0").status, Status::not_identified);
   EXPECT_EQ(estimate(c, "anisotropy.a1").status, Status::tied);
   EXPECT_EQ(estimate(c, "anisotropy.a2").status, Status::fitted);
   EXPECT_EQ(c.shear.size(), 8u);
-  EXPECT_NEAR(c.nu_min, 0.675, 2e-3);
-  EXPECT_NEAR(c.nu_max, 0.83, 1e-9);
-  EXPECT_NEAR(c.eps_dev_max, 0.30, 1e-9);
+  EXPECT_NEAR(c.law.range.nu_min, 0.675, 2e-3);
+  EXPECT_NEAR(c.law.range.nu_max, 0.83, 1e-9);
+  EXPECT_NEAR(c.law.range.eps_dev_max, 0.30, 1e-9);
 }
 
 // a1 = (2/3)(a2 - mean over tests of a ratio): what a packing does to a1 beyond (2/3) of what it does to a2 is its deviation
@@ -74,7 +77,7 @@ TEST(Calibrate, CovarianceJoinsTheStages) {
   for (const auto& [a, b] : {std::pair("coordination.C1", "pressure.p0"), std::pair("pressure.p0", "overlap.D"),
                              std::pair("stress_ratio_max.Q_limit", "fabric.g3")}) {
     const double correlation =
-        c.covariance(k(a), k(b)) / std::sqrt(c.covariance(k(a), k(a)) * c.covariance(k(b), k(b)));
+        c.law.covariance(k(a), k(b)) / std::sqrt(c.law.covariance(k(a), k(a)) * c.law.covariance(k(b), k(b)));
     EXPECT_GT(std::abs(correlation), 1e-6) << a << " " << b;
     EXPECT_LE(std::abs(correlation), 1 + 1e-12) << a << " " << b;
   }
@@ -83,7 +86,7 @@ TEST(Calibrate, CovarianceJoinsTheStages) {
 TEST(Calibrate, FindsTheCurvesOfANoisyTruthWithinItsErrors) {
   const LawParameters<double> truth = testing::synthetic_truth();
   const Calibration c = calibrate(testing::synthetic_dataset(truth, noisy()), {}, {});
-  const LawParameters<double>& p = c.parameters;
+  const LawParameters<double>& p = c.law.parameters;
   for (const double nu : {0.68, 0.70, 0.74, 0.80}) {
     EXPECT_NEAR(p.isotropic.P_star(nu) / truth.isotropic.P_star(nu), 1, 0.02) << nu;
     EXPECT_NEAR(p.isotropic.coordination.C_star(nu) / truth.isotropic.coordination.C_star(nu), 1, 0.005) << nu;

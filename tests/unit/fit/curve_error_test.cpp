@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "fit/stages/staged_laws.hpp"
+#include "fit/staged_laws.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -17,8 +17,8 @@ const DensityCurve& curve(const std::string& name) {
 }
 
 /// Eq. (20) for F_max with errors of Q_c and alpha that go together; Q_limit on its bound.
-Calibration calibration() {
-  Calibration c = nothing_known();
+CalibratedLaw calibrated() {
+  CalibratedLaw c = nothing_known().law;
   c.parameters = published_parameters();
   const auto set = [&](const char* name, Status status, double error) {
     const std::size_t i = parameter_index(name);
@@ -35,7 +35,7 @@ Calibration calibration() {
 }
 
 TEST(CurveError, IsThatOfTheDeltaMethod) {
-  const Calibration c = calibration();
+  const CalibratedLaw c = calibrated();
   const ExponentialLaw<double>& law = c.parameters.fabric_max;
   for (const double nu : {0.67, 0.70, 0.82}) {
     const double y = nu / c.parameters.shear_nu_c - 1, decay = std::exp(-law.alpha * y);
@@ -46,7 +46,7 @@ TEST(CurveError, IsThatOfTheDeltaMethod) {
 }
 
 TEST(CurveError, IsUndefinedWhereAParameterHasNone) {
-  Calibration c = calibration();
+  CalibratedLaw c = calibrated();
   const auto q = static_cast<Eigen::Index>(parameter_index("fabric_max.Q_c"));
   c.covariance.row(q).setZero();
   c.covariance.col(q).setZero();

@@ -1,4 +1,4 @@
-#include "fit/data_set.hpp"
+#include "fit/data/data_set.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {
@@ -43,19 +44,19 @@ void expect_recovered(const StateLaw<double>& found, const StateLaw<double>& tru
 
 TEST(DensityFit, RecoversTable2FromTheTablesOwnStart) {
   const LawParameters<double> truth = published_parameters();
-  StateLaw<double> law = start_parameters().isotropic;
+  LawParameters<double> law = start_parameters();
   const auto series = exact_series(truth, kDensities, 2);
-  const std::vector<StageFit> fits = fit_state_law("", series, "all", law, {}, {});
+  const std::vector<StageFit> fits = testing::run_stages(state_law_stages(kUnloadingLaw, series, "all"), law);
   ASSERT_EQ(fits.size(), 3u);
   for (const StageFit& fit : fits) EXPECT_TRUE(fit.stage.converged) << fit.stage.name << fit.stage.termination;
   EXPECT_EQ(fits[0].stage.name, "coordination");
   EXPECT_EQ(fits[0].stage.tests.size(), 2u);
-  expect_recovered(law, truth.isotropic, 1e-9);
+  expect_recovered(law.isotropic, truth.isotropic, 1e-9);
 
-  const StageFit D = fit_overlap(series, "all", fits.back(), 0.5, {}, {});
-  EXPECT_NEAR(D.solution.x(0), truth.overlap_D, 1e-9);
-  const StageFit g3 = fit_fabric_trace(series, "all", 1, {}, {});
-  EXPECT_NEAR(g3.solution.x(0), truth.fabric_g3, 1e-12);
+  run_stage(overlap_stage(series, "all", law.isotropic.pressure.nu_c), law, {}, {});
+  EXPECT_NEAR(law.overlap_D, truth.overlap_D, 1e-9);
+  run_stage(fabric_trace_stage(series, "all"), law, {}, {});
+  EXPECT_NEAR(law.fabric_g3, truth.fabric_g3, 1e-12);
 }
 
 TEST(DensityFit, PressureDoesNotInheritTheMisfitOfCoordination) {
@@ -65,16 +66,16 @@ TEST(DensityFit, PressureDoesNotInheritTheMisfitOfCoordination) {
   for (DensitySeries& s : series) {
     for (DensityPoint& p : s.points) p.P_star *= p.C_star / truth.isotropic.coordination.C_star(p.nu);
   }
-  StateLaw<double> law = start_parameters().isotropic;
-  fit_state_law("", series, "all", law, {}, {});
-  EXPECT_NEAR(law.pressure.p0, truth.isotropic.pressure.p0, 1e-9);
-  EXPECT_NEAR(law.pressure.nu_c, truth.isotropic.pressure.nu_c, 1e-9);
+  LawParameters<double> law = start_parameters();
+  testing::run_stages(state_law_stages(kUnloadingLaw, series, "all"), law);
+  EXPECT_NEAR(law.isotropic.pressure.p0, truth.isotropic.pressure.p0, 1e-9);
+  EXPECT_NEAR(law.isotropic.pressure.nu_c, truth.isotropic.pressure.nu_c, 1e-9);
 }
 
 TEST(DensityFit, TwoDensitiesDoNotDetermineThreeParameters) {
-  StateLaw<double> law = start_parameters().steady;
+  LawParameters<double> law = start_parameters();
   const auto series = exact_series(published_parameters(), {0.70, 0.74}, 2);
-  const std::vector<StageFit> fits = fit_state_law("steady_", series, "two", law, {}, {});
+  const std::vector<StageFit> fits = testing::run_stages(state_law_stages(kSteadyLaw, series, "two"), law);
   for (const NamedEstimate& e : fits[0].stage.estimates) EXPECT_EQ(e.estimate.status, Status::not_identified) << e.name;
   for (const NamedEstimate& e : fits[1].stage.estimates) EXPECT_EQ(e.estimate.status, Status::fitted) << e.name;
   for (const NamedEstimate& e : fits[2].stage.estimates) EXPECT_EQ(e.estimate.status, Status::not_identified) << e.name;
@@ -83,9 +84,9 @@ TEST(DensityFit, TwoDensitiesDoNotDetermineThreeParameters) {
 }
 
 TEST(DensityFit, OneSeriesHasValuesButNoErrors) {
-  StateLaw<double> law = start_parameters().isotropic;
+  LawParameters<double> law = start_parameters();
   const auto series = exact_series(published_parameters(), kDensities, 1);
-  for (const StageFit& fit : fit_state_law("", series, "one", law, {}, {})) {
+  for (const StageFit& fit : testing::run_stages(state_law_stages(kUnloadingLaw, series, "one"), law)) {
     for (const NamedEstimate& e : fit.stage.estimates) {
       EXPECT_EQ(e.estimate.status, Status::fitted) << e.name;
       EXPECT_TRUE(std::isnan(e.estimate.standard_error)) << e.name;
@@ -97,9 +98,9 @@ TEST(DensityFit, OneSeriesHasValuesButNoErrors) {
 TEST(DensityFit, MissingOverlapsLeaveTheStageOut) {
   auto series = exact_series(published_parameters(), kDensities, 2);
   series[1].points[3].mean_overlap = std::nan("");
-  StageFit pressure;
-  pressure.solution.x = Eigen::Vector3d(0.04, 0, 0.665);
-  const StageFit D = fit_overlap(series, "all", pressure, 0.5, {}, {});
+  LawParameters<double> law = start_parameters();
+  const StageFit D = run_stage(overlap_stage(series, "all", 0.665), law, {}, {});
+  EXPECT_EQ(D.stage.termination, "left out");
   EXPECT_EQ(D.stage.estimates.at(0).estimate.status, Status::not_identified);
   EXPECT_NE(D.stage.estimates[0].estimate.note.find("iso-1"), std::string::npos);
 }

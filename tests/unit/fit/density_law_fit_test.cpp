@@ -35,12 +35,16 @@ std::vector<int> own_clusters(const std::vector<ShearFit>& fits) {
   return cluster;
 }
 
+StageFit fit_law(const ShearQuantity& quantity, const std::vector<ShearFit>& fits, LawParameters<double>& law) {
+  return run_stage(density_law_stage(quantity, fits, own_clusters(fits), law.shear_nu_c, {}), law, {}, {});
+}
+
 TEST(DensityLawFit, RecoversTable3) {
   const LawParameters<double> truth = published_parameters();
   const std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78, 0.82}, 1);
   LawParameters<double> law = start_parameters();
   for (const ShearQuantity& q : kShearQuantities) {
-    const StageFit fit = fit_density_law(q, fits, own_clusters(fits), law, {}, {});
+    const StageFit fit = fit_law(q, fits, law);
     EXPECT_TRUE(fit.stage.converged) << q.name << " " << fit.stage.termination;
     const ExponentialLaw<double>&found = law.*q.law, &expected = truth.*q.law;
     EXPECT_NEAR(found.Q_limit, expected.Q_limit, 1e-8 * expected.Q_c) << q.name;
@@ -50,8 +54,12 @@ TEST(DensityLawFit, RecoversTable3) {
 }
 
 TEST(DensityLawFit, ValuesWeighByTheirOwnMagnitudeAtLeastAFifthOfTheMean) {
-  const DensityLawProblem problem =
-      density_law_problem("stress_rate", {"a", "b", "c"}, {0, 1, 2}, {{0.70, 10}, {0.74, 49}, {0.78, 1}}, 0.6653);
+  std::vector<ShearFit> fits = table3({0.70, 0.74, 0.78}, 1);
+  fits[0].beta_s.value = 10;
+  fits[1].beta_s.value = 49;
+  fits[2].beta_s.value = 1;
+  const Problem problem =
+      problem_of(density_law_stage(kShearQuantities[1], fits, own_clusters(fits), 0.6653, {}), start_parameters());
   ASSERT_EQ(problem.blocks.size(), 3u);
   EXPECT_NEAR(problem.blocks[0].weight(0), 1. / 10, 1e-15);
   EXPECT_NEAR(problem.blocks[1].weight(0), 1. / 49, 1e-15);
@@ -62,12 +70,12 @@ TEST(DensityLawFit, ThreeDensitiesDetermineTheCurveAndSeedsTheError) {
   LawParameters<double> law = start_parameters();
   const ShearQuantity& s_max = kShearQuantities[0];
   const std::vector<ShearFit> one = table3({0.68, 0.72, 0.80}, 1);
-  for (const NamedEstimate& e : fit_density_law(s_max, one, own_clusters(one), law, {}, {}).stage.estimates) {
+  for (const NamedEstimate& e : fit_law(s_max, one, law).stage.estimates) {
     EXPECT_EQ(e.estimate.status, Status::fitted) << e.name;
     EXPECT_TRUE(std::isnan(e.estimate.standard_error)) << "no degree of freedom left: " << e.name;
   }
   const std::vector<ShearFit> two = table3({0.68, 0.72, 0.80}, 2, 0.02);
-  for (const NamedEstimate& e : fit_density_law(s_max, two, own_clusters(two), law, {}, {}).stage.estimates) {
+  for (const NamedEstimate& e : fit_law(s_max, two, law).stage.estimates) {
     EXPECT_EQ(e.estimate.status, Status::fitted) << e.name;
     EXPECT_GT(e.estimate.standard_error, 0) << e.name;
   }
@@ -78,7 +86,7 @@ TEST(DensityLawFit, FewerDensitiesMeetTheirValuesButIdentifyNothing) {
     const std::vector<ShearFit> fits = table3(densities, 2);
     LawParameters<double> law = start_parameters();
     for (const ShearQuantity& q : kShearQuantities) {
-      const StageFit fit = fit_density_law(q, fits, own_clusters(fits), law, {}, {});
+      const StageFit fit = fit_law(q, fits, law);
       for (const NamedEstimate& e : fit.stage.estimates) {
         EXPECT_EQ(e.estimate.status, Status::not_identified) << e.name;
         EXPECT_TRUE(std::isnan(e.estimate.standard_error)) << e.name;
@@ -98,7 +106,7 @@ TEST(DensityLawFit, AConstantIsALawOfItsOwn) {
   for (std::size_t i = 0; i < fits.size(); ++i)
     fits[i].s_max.value = 0.15 + 0.001 * fits[i].nu;  // grows: decays nowhere
   LawParameters<double> law = start_parameters();
-  const StageFit fit = fit_density_law(kShearQuantities[0], fits, own_clusters(fits), law, {}, {});
+  const StageFit fit = fit_law(kShearQuantities[0], fits, law);
   EXPECT_TRUE(fit.stage.converged) << fit.stage.termination;
   EXPECT_EQ(fit.stage.estimates[0].estimate.status, Status::fitted);
   EXPECT_EQ(fit.stage.estimates[1].estimate.status, Status::at_bound);
@@ -110,7 +118,7 @@ TEST(DensityLawFit, ARateWithoutTrendKeepsItsCurve) {
   std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78}, 2);
   for (std::size_t i = 0; i < fits.size(); ++i) fits[i].beta_s.value = 45 - 10 * fits[i].nu + (i % 2 == 0 ? 1 : -1);
   LawParameters<double> law = start_parameters();
-  const StageFit fit = fit_density_law(kShearQuantities[1], fits, own_clusters(fits), law, {}, {});
+  const StageFit fit = fit_law(kShearQuantities[1], fits, law);
   for (const NamedEstimate& e : fit.stage.estimates) EXPECT_NE(e.estimate.status, Status::not_identified) << e.name;
   EXPECT_NEAR(law.stress_rate.value(0.72, law.shear_nu_c), 45 - 7.2, 0.1);
 }
@@ -119,11 +127,11 @@ TEST(DensityLawFit, TestsThatShowedNothingAreLeftOut) {
   std::vector<ShearFit> fits = table3({0.68, 0.70, 0.74, 0.78}, 1);
   fits[0].s_max = {1e9, std::nan(""), Status::not_identified, "short"};
   LawParameters<double> law = start_parameters();
-  const StageFit fit = fit_density_law(kShearQuantities[0], fits, own_clusters(fits), law, {}, {});
+  const StageFit fit = fit_law(kShearQuantities[0], fits, law);
   EXPECT_EQ(fit.stage.residuals, 3);
   EXPECT_NEAR(law.stress_ratio_max.value(0.70, law.shear_nu_c), fits[1].s_max.value, 1e-6);
   for (ShearFit& f : fits) f.s_max.status = Status::not_identified;
-  EXPECT_EQ(fit_density_law(kShearQuantities[0], fits, own_clusters(fits), law, {}, {}).stage.termination, "left out");
+  EXPECT_EQ(fit_law(kShearQuantities[0], fits, law).stage.termination, "left out");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "fit/stages/density_series.hpp"
+#include "fit/data/density_series.hpp"
 
 #include <gtest/gtest.h>
 

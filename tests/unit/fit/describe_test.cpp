@@ -62,16 +62,16 @@ TEST(Describe, UniaxialLawsComeFromTheUnloadingSegment) {
   }
   const std::vector<Description> all = described(tests);
   const Calibration& uni = all.front().calibration;
-  EXPECT_NEAR(uni.parameters.isotropic.coordination.C1, kDescribed.steady.coordination.C1, 1e-6);
-  EXPECT_NEAR(uni.parameters.isotropic.coordination.nu_c, kDescribed.steady.coordination.nu_c, 1e-8);
-  EXPECT_TRUE(has_values(uni, "pressure"));
-  EXPECT_FALSE(has_values(uni, "stress_ratio_max"));
+  EXPECT_NEAR(uni.law.parameters.isotropic.coordination.C1, kDescribed.steady.coordination.C1, 1e-6);
+  EXPECT_NEAR(uni.law.parameters.isotropic.coordination.nu_c, kDescribed.steady.coordination.nu_c, 1e-8);
+  EXPECT_TRUE(has_values(uni.law, "pressure"));
+  EXPECT_FALSE(has_values(uni.law, "stress_ratio_max"));
 }
 
 TEST(Describe, ShearModesGiveTheLawsOverDensity) {
   for (const Description& d : described(records_to_describe())) {
     if (d.name == "UNI") continue;
-    const LawParameters<double>& p = d.calibration.parameters;
+    const LawParameters<double>& p = d.calibration.law.parameters;
     EXPECT_EQ(d.calibration.shear.size(), 8u) << d.name;
     for (const double nu : {0.70, 0.80}) {
       EXPECT_NEAR(p.fabric_max.value(nu, p.shear_nu_c) / kDescribed.fabric_max.value(nu, kDescribed.shear_nu_c), 1,
@@ -79,8 +79,8 @@ TEST(Describe, ShearModesGiveTheLawsOverDensity) {
           << d.name;
       EXPECT_NEAR(p.steady.coordination.C_star(nu), kDescribed.steady.coordination.C_star(nu), 1e-6) << d.name;
     }
-    EXPECT_FALSE(has_values(d.calibration, "pressure")) << d.name;
-    EXPECT_TRUE(d.calibration.converged);
+    EXPECT_FALSE(has_values(d.calibration.law, "pressure")) << d.name;
+    EXPECT_TRUE(d.calibration.law.converged);
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "tests/support/stage_estimate.hpp"
+#include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {
@@ -26,13 +26,13 @@ testing::SyntheticOptions small() {
   return options;
 }
 
-EvolutionProblem problem_of(const std::vector<Trajectory>& all) {
-  return evolution_problem(all, kTruth, evolution_parameters(Coupling::energy), {});
+Problem evolution_problem(const std::vector<Trajectory>& all) {
+  return problem_of(evolution_stage(all, {}, {}), kTruth);
 }
 
 TEST(EvolutionFit, TruthHasNoMisfit) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
-  const EvolutionProblem problem = problem_of(all);
+  const Problem problem = evolution_problem(all);
   ASSERT_EQ(problem.parameters.size(), 16u);
   ASSERT_EQ(problem.blocks.size(), all.size());
   std::vector<double> x;
@@ -59,7 +59,7 @@ TEST(EvolutionFit, EachAxisHasItsOwnRows) {
     row.data.sigma += row.data.P * (0.003 * N + 0.004 * M);
     row.data.F += 0.01 * N + 0.02 * M;
   }
-  const EvolutionProblem problem = problem_of({sheared});
+  const Problem problem = evolution_problem({sheared});
   std::vector<double> x;
   for (const FreeParameter& p : problem.parameters) x.push_back(p.start);
   const ResidualBlock& block = problem.blocks.front();
@@ -76,7 +76,7 @@ TEST(EvolutionFit, EachAxisHasItsOwnRows) {
 
 TEST(EvolutionFit, PressureInShearIsShownAndNotFitted) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
-  for (const ResidualBlock& block : problem_of(all).blocks) {
+  for (const ResidualBlock& block : evolution_problem(all).blocks) {
     const Channel& pressure = block.channels.at(0);
     ASSERT_EQ(pressure.quantity, "P_star");
     const double weight = block.weight.segment(pressure.first, pressure.rows).maxCoeff();
@@ -94,7 +94,7 @@ TEST(EvolutionFit, DilatancyDoesNotCorruptStressAndFabric) {
   options.dilatancy_strain = 0.05;
   const auto all = trajectories(testing::synthetic_dataset(kTruth, options));
   LawParameters<double> law = kTruth;
-  const StageFit fit = fit_evolution(all, law, {}, {}, {});
+  const StageFit fit = run_stage(evolution_stage(all, {}, {}), law, {}, {});
   ASSERT_TRUE(fit.stage.converged) << fit.stage.termination;
   for (const double nu : {0.68, 0.74, 0.80}) {
     const auto near = [&](auto field, double tolerance) {
@@ -123,7 +123,7 @@ TEST(EvolutionFit, CouplingNeedsAPathThatChangesTheVolumeOfAShearedState) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, options));
   EXPECT_FALSE(contains_anisotropy(all));
   LawParameters<double> law = kTruth;
-  const StageFit fit = fit_evolution(all, law, {}, {}, {});
+  const StageFit fit = run_stage(evolution_stage(all, {}, {}), law, {}, {});
   EXPECT_EQ(estimate(fit, "anisotropy.a2").status, Status::not_identified);
   EXPECT_NE(estimate(fit, "anisotropy.a2").note.find("then ISO"), std::string::npos);
   const TiedCoupling tied = tied_a1(all, law, estimate(fit, "anisotropy.a2"), Eigen::RowVector2d(0, 0), {});

@@ -31,7 +31,7 @@ std::vector<ResidualBlock> blocks_of(const std::vector<double>& values, double s
 }
 
 StageFit mean_of(const std::string& name, const std::vector<double>& values, double shift) {
-  return fit_stage(name, "", {{name, 0.5, -100, 100, 1}}, blocks_of(values, shift), "", 1, {});
+  return fit_stage(name, "", {{{name, 0.5, -100, 100, 1}}, blocks_of(values, shift)}, "", 1, {});
 }
 
 double variance(const StageFit& fit) { return std::pow(fit.stage.estimates[0].estimate.standard_error, 2); }
@@ -84,10 +84,7 @@ TEST(InheritedError, SlopesOfALawAreFoundByDifferences) {
   law.overlap_D = a.solution.x(0);
   StageFit by_difference = mean_of("b", y, kSlope * law.overlap_D), by_slope = by_difference;
   FoundErrors found = no_errors();
-  widen(found.influence, 5);
-  const auto D = static_cast<Eigen::Index>(parameter_index("overlap.D"));
-  found.influence.row(D) = a.influence.row(0);
-  found.degrees_of_freedom(D) = 4;
+  add_errors(a, found);
   inherit_error(
       {"overlap"}, found, law,
       [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, 1, by_difference);
@@ -126,12 +123,9 @@ TEST(InheritedError, TheWholeChangeOfTheGradientCounts) {
   const StageFit a = mean_of("overlap.D", x, 0);
   LawParameters<double> law = start_parameters();
   const double D = law.overlap_D = a.solution.x(0);
-  StageFit b = fit_stage("b", "", {{"b", 0.5, -100, 100, 1}}, product_blocks(y, D), "", 1, {});
+  StageFit b = fit_stage("b", "", {{{"b", 0.5, -100, 100, 1}}, product_blocks(y, D)}, "", 1, {});
   FoundErrors found = no_errors();
-  widen(found.influence, 5);
-  const auto row = static_cast<Eigen::Index>(parameter_index("overlap.D"));
-  found.influence.row(row) = a.influence.row(0);
-  found.degrees_of_freedom(row) = 4;
+  add_errors(a, found);
   inherit_error(
       {"overlap"}, found, law, [&](const LawParameters<double>& given) { return product_blocks(y, given.overlap_D); },
       1, b);

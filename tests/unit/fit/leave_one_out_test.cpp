@@ -45,11 +45,11 @@ TEST(LeaveOneOut, IsTheCalibrationOfTheRestAndConfirmsTheStatedErrors) {
   const Calibration rest = calibrate(noisy_tests({1, 3}), coarse(), {});
   for (const char* name : {"pressure.p0", "stress_ratio_max.Q_c"}) {
     const std::size_t i = parameter_index(name);
-    EXPECT_EQ(fits[1].value[i], *fields(rest.parameters)[i]) << name;
+    EXPECT_EQ(fits[1].value[i], *fields(rest.law.parameters)[i]) << name;
   }
   for (const char* name : {"coordination.C1", "pressure.p0", "stress_ratio_max.Q_limit", "stress_rate.Q_limit"}) {
     const std::size_t i = parameter_index(name);
-    EXPECT_NEAR(jackknife_error(fits, i) / all.estimates[i].standard_error, 1, 0.3) << name;
+    EXPECT_NEAR(jackknife_error(fits, i) / all.law.estimates[i].standard_error, 1, 0.3) << name;
   }
 }
 

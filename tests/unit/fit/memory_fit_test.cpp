@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "fit/calibrate.hpp"
-#include "tests/support/stage_estimate.hpp"
+#include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {
@@ -43,7 +43,7 @@ LawParameters<double> at_start() {
 TEST(MemoryFit, GivesBackWhatMadeTheData) {
   const auto tests = testing::synthetic_dataset(memory_truth(), of_memory());
   LawParameters<double> law = at_start();
-  const StageFit fit = fit_memory(memory_trajectories(tests), law, {}, {});
+  const StageFit fit = run_stage(memory_stage(memory_trajectories(tests), {}), law, {}, {});
   EXPECT_TRUE(fit.stage.converged) << fit.stage.termination;
   const LawParameters<double> expected = memory_truth();
   EXPECT_NEAR(law.memory.G, expected.memory.G, 1e-5);
@@ -65,8 +65,8 @@ TEST(MemoryFit, WithoutVolumeChangeAfterShearTwoAreNotIdentified) {
   SyntheticOptions options = of_memory();
   options.sequences = false;
   LawParameters<double> law = at_start();
-  const StageFit fit =
-      fit_memory(memory_trajectories(testing::synthetic_dataset(memory_truth(), options)), law, {}, {});
+  const auto trajectories = memory_trajectories(testing::synthetic_dataset(memory_truth(), options));
+  const StageFit fit = run_stage(memory_stage(trajectories, {}), law, {}, {});
   for (const char* name : {"memory.c_F", "memory.a2"}) {
     EXPECT_EQ(estimate(fit, name).status, Status::not_identified) << name;
     EXPECT_NE(estimate(fit, name).note.find("ISO"), std::string::npos) << "names the remedy";
@@ -84,7 +84,8 @@ TEST(MemoryFit, TheRateOfALagThatMayBeNoneNeedNotBeKnown) {
   for (const double kappa : {0.5, 0.85}) {
     truth.memory.kappa = kappa;
     LawParameters<double> law = at_start();
-    const StageFit fit = fit_memory(memory_trajectories(testing::synthetic_dataset(truth, options)), law, {}, {});
+    const auto trajectories = memory_trajectories(testing::synthetic_dataset(truth, options));
+    const StageFit fit = run_stage(memory_stage(trajectories, {}), law, {}, {});
     const Estimate lambda = estimate(fit, "memory.lambda");
     EXPECT_NE(lambda.status, Status::not_identified) << kappa << ": " << lambda.note;
     const bool vague = !(lambda.standard_error <= 0.5 * lambda.value);  // on a bound it has no error
@@ -98,7 +99,7 @@ TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {
   const CalibrationOptions options;
   for (const Trajectory& t : memory_trajectories(testing::synthetic_dataset(memory_truth(), of_memory()))) {
     if (t.axes.empty() || std::abs(t.direction.dx) > 1e-12) continue;
-    const MemoryProblem problem = memory_problem({t}, memory_truth(), true, options);
+    const Problem problem = problem_of(memory_stage({t}, options), memory_truth());
     const Channel& P = problem.blocks.front().channels.front();
     ASSERT_EQ(P.quantity, "P_star");
     double mean = 0;
@@ -113,12 +114,12 @@ TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
   SyntheticOptions few = of_memory();
   few.densities = {0.70, 0.74};
   const Calibration calibration = calibrate(testing::synthetic_dataset(memory_truth(), few), {}, {});
-  EXPECT_FALSE(has_values(calibration, "memory"));
-  const Estimate& G = calibration.estimates[parameter_index("memory.G")];
+  EXPECT_FALSE(has_values(calibration.law, "memory"));
+  const Estimate& G = calibration.law.estimates[parameter_index("memory.G")];
   EXPECT_EQ(G.status, Status::not_identified);
   EXPECT_NE(G.note.find("shear by D2 at more densities"), std::string::npos) << G.note;
   for (const char* name : {"memory.m", "memory.a_P"})
-    EXPECT_EQ(calibration.estimates[parameter_index(name)].status, Status::fixed) << name;
+    EXPECT_EQ(calibration.law.estimates[parameter_index(name)].status, Status::fixed) << name;
 }
 
 TEST(MemoryFit, SlopesAreFiniteAtAReversal) {

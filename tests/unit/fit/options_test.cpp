@@ -1,4 +1,4 @@
-#include "fit/options.hpp"
+#include "fit/data/options.hpp"
 
 #include <gtest/gtest.h>
 

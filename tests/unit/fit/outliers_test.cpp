@@ -1,4 +1,4 @@
-#include "fit/statistics/outliers.hpp"
+#include "fit/data/outliers.hpp"
 
 #include <gtest/gtest.h>
 

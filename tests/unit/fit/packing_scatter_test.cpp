@@ -1,4 +1,4 @@
-#include "fit/statistics/packing_scatter.hpp"
+#include "fit/data/packing_scatter.hpp"
 
 #include <gtest/gtest.h>
 

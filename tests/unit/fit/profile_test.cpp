@@ -49,8 +49,8 @@ const auto kStraight = [](const double* x, double t, double* d) {
 };
 
 StageFit profiled(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks) {
-  StageFit fit = fit_stage("stage", "", parameters, blocks, "look elsewhere", 1, {});
-  profile_doubtful(parameters, blocks, 1, {}, fit);
+  StageFit fit = fit_stage("stage", "", {parameters, blocks}, "look elsewhere", 1, {});
+  profile_doubtful({parameters, blocks}, 1, {}, fit);
   return fit;
 }
 
@@ -76,7 +76,7 @@ TEST(Profile, OfAParameterOnItsBoundHasItsOtherEnd) {
   const std::vector<FreeParameter> free{{"level", 0, -10, 10, 1}, {"slope", 0, -10, 10, 1}};
   const std::vector<FreeParameter> bounded{{"level", 0, -10, 10, 1}, {"slope", 1, 0, 10, 1}};
   const auto blocks = blocks_of(kStraight, 5, -0.2);
-  const double b = fit_stage("free", "", free, blocks, "", 1, {}).solution.x(1);
+  const double b = fit_stage("free", "", {free, blocks}, "", 1, {}).solution.x(1);
   ASSERT_LT(b, 0);
   const StageFit fit = profiled(bounded, blocks);
   ASSERT_EQ(fit.stage.profiles.size(), 1u);

@@ -15,28 +15,31 @@ using testing::leg;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// D2 at nu = 0.74 by the reduced law, with bands.
-Prediction banded(const Uncertainty& uncertainty, bool start_from_law = true) {
-  const LawParameters<double> p = published_parameters();
+Prediction banded(const CalibratedLaw& law) {
   const auto path = testing::path_from(0.74, {leg(Mode::D2, 0.2)});
-  Prediction prediction = predict(Rung::reduced, p, Coupling::energy, path, state_from_law(p, 0.74),
-                                  uniform_points(path, 4), {}, {}, {}, {uncertainty.parameters, start_from_law});
-  add_bands(p, uncertainty, prediction);
-  return prediction;
+  return predict_with_bands(Rung::reduced, law, path, state_from_law(law.parameters, 0.74), true,
+                            uniform_points(path, 4), {});
 }
 
-Uncertainty of(const std::vector<const char*>& names, const Eigen::MatrixXd& covariance, double degrees_of_freedom) {
-  Uncertainty uncertainty;
-  for (const char* name : names) uncertainty.parameters.push_back(parameter_index(name));
-  uncertainty.covariance = covariance;
-  uncertainty.degrees_of_freedom =
-      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(names.size()), degrees_of_freedom);
-  return uncertainty;
+/// The published law with errors of the parameters `names`.
+CalibratedLaw with_errors(const std::vector<const char*>& names, const Eigen::MatrixXd& covariance,
+                          double degrees_of_freedom) {
+  CalibratedLaw law;
+  law.parameters = published_parameters();
+  law.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
+  std::vector<std::size_t> indices;
+  for (const char* name : names) {
+    indices.push_back(parameter_index(name));
+    law.estimates[indices.back()].degrees_of_freedom = degrees_of_freedom;
+  }
+  law.covariance(indices, indices) = covariance;
+  return law;
 }
 
 TEST(Bands, OfPFollowItsPrefactor) {
   // P* is proportional to p0: its relative half width is p0's
   const double p0 = published_parameters().isotropic.pressure.p0, error = 0.01 * p0;
-  const Prediction prediction = banded(of({"pressure.p0"}, Eigen::MatrixXd::Constant(1, 1, error * error), 2));
+  const Prediction prediction = banded(with_errors({"pressure.p0"}, Eigen::MatrixXd::Constant(1, 1, error * error), 2));
   for (const PredictedRow& row : prediction.rows) {
     EXPECT_NEAR(row.mean.P, student_95(2) * 0.01 * row.state.P, 1e-8 * row.state.P);
     EXPECT_NEAR(row.mean.s_par, 0, 1e-10) << "the ratio does not move";
@@ -49,21 +52,21 @@ TEST(Bands, CountCorrelationsAndTheSignsOfSlopes) {
   const LawParameters<double> p = published_parameters();
   const double decay = std::exp(-p.stress_ratio_max.alpha * (0.74 / p.shear_nu_c - 1));
   const Eigen::Vector2d direction(decay, -1);
-  const Prediction cancelled = banded(
-      of({"stress_ratio_max.Q_limit", "stress_ratio_max.Q_c"}, 1e-4 * direction * direction.transpose(), kInfinity));
+  const Prediction cancelled = banded(with_errors({"stress_ratio_max.Q_limit", "stress_ratio_max.Q_c"},
+                                                  1e-4 * direction * direction.transpose(), kInfinity));
   EXPECT_NEAR(cancelled.rows.back().mean.s_par, 0, 1e-7);
-  const Prediction independent = banded(
-      of({"stress_ratio_max.Q_limit", "stress_ratio_max.Q_c"}, 1e-4 * Eigen::MatrixXd::Identity(2, 2), kInfinity));
+  const Prediction independent = banded(with_errors({"stress_ratio_max.Q_limit", "stress_ratio_max.Q_c"},
+                                                    1e-4 * Eigen::MatrixXd::Identity(2, 2), kInfinity));
   const double grown = 1 - std::exp(-p.stress_rate.value(0.74, p.shear_nu_c) * 0.2);
   EXPECT_NEAR(independent.rows.back().mean.s_par, student_95(kInfinity) * 1e-2 * grown * std::hypot(1, decay), 1e-8);
 }
 
 TEST(Bands, OfASingleRunAddTheScatter) {
   const double p0 = published_parameters().isotropic.pressure.p0, error = 0.01 * p0;
-  Uncertainty uncertainty = of({"pressure.p0"}, Eigen::MatrixXd::Constant(1, 1, error * error), 2);
-  uncertainty.scatter = {1e-3, 0.02, 0.01, 22};
+  CalibratedLaw law = with_errors({"pressure.p0"}, Eigen::MatrixXd::Constant(1, 1, error * error), 2);
+  law.scatter = {3, 22, 1e-3, 0.02, 0.01};
   const LawParameters<double> p = published_parameters();
-  for (const PredictedRow& row : banded(uncertainty).rows) {
+  for (const PredictedRow& row : banded(law).rows) {
     const double mean = student_95(2) * 0.01 * row.state.P, scatter = student_95(22) * 1e-3 * p.isotropic.B_star(0.74);
     EXPECT_NEAR(row.single.P, std::hypot(mean, scatter), 1e-8 * row.state.P);
     EXPECT_NEAR(row.single.s_par, student_95(22) * 0.02, 1e-8) << "where the mean is known";
@@ -72,9 +75,10 @@ TEST(Bands, OfASingleRunAddTheScatter) {
 }
 
 TEST(Bands, DegreesOfFreedomAreThoseOfWhatMovesTheCurve) {
-  Uncertainty uncertainty = of({"pressure.p0", "stress_ratio_max.Q_limit"}, 1e-6 * Eigen::MatrixXd::Identity(2, 2), 2);
-  uncertainty.degrees_of_freedom(1) = 20;
-  const PredictedRow end = banded(uncertainty).rows.back();
+  CalibratedLaw law =
+      with_errors({"pressure.p0", "stress_ratio_max.Q_limit"}, 1e-6 * Eigen::MatrixXd::Identity(2, 2), 2);
+  law.estimates[parameter_index("stress_ratio_max.Q_limit")].degrees_of_freedom = 20;
+  const PredictedRow end = banded(law).rows.back();
   const LawParameters<double> p = published_parameters();
   EXPECT_NEAR(end.mean.P, student_95(2) * 1e-3 * end.state.P / p.isotropic.pressure.p0, 1e-6 * end.state.P);
   const double grown = 1 - std::exp(-p.stress_rate.value(0.74, p.shear_nu_c) * 0.2);
@@ -82,20 +86,18 @@ TEST(Bands, DegreesOfFreedomAreThoseOfWhatMovesTheCurve) {
 }
 
 TEST(Bands, AMeasuredStartHasNoError) {
-  const Uncertainty uncertainty = of({"pressure.p0"}, Eigen::MatrixXd::Constant(1, 1, 1e-8), 2);
+  const CalibratedLaw law = with_errors({"pressure.p0"}, Eigen::MatrixXd::Constant(1, 1, 1e-8), 2);
   // the closed form reads no P from its start, but evolution does: at constant volume P stays where it began
-  const LawParameters<double> p = published_parameters();
   const auto path = testing::path_from(0.74, {leg(Mode::D2, 0.2)});
   for (const bool from_law : {true, false}) {
-    Prediction prediction = predict(Rung::evolution, p, Coupling::energy, path, state_from_law(p, 0.74), {{0, 0.0}}, {},
-                                    {}, {}, {uncertainty.parameters, from_law});
-    add_bands(p, uncertainty, prediction);
+    const Prediction prediction =
+        predict_with_bands(Rung::evolution, law, path, state_from_law(law.parameters, 0.74), from_law, {{0, 0.0}}, {});
     EXPECT_EQ(prediction.rows[0].mean.P > 0, from_law);
   }
 }
 
 TEST(Bands, AreNoneWithoutErrors) {
-  for (const PredictedRow& row : banded({}).rows) {
+  for (const PredictedRow& row : banded(with_errors({}, Eigen::MatrixXd(0, 0), 2)).rows) {
     EXPECT_TRUE(std::isnan(row.mean.P));
     EXPECT_TRUE(std::isnan(row.single.F_par));
   }

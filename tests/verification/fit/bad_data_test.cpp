@@ -10,7 +10,7 @@
 #include <random>
 
 #include "fit/calibrate.hpp"
-#include "fit/statistics/outliers.hpp"
+#include "fit/data/outliers.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/fit_coverage.hpp"
@@ -152,7 +152,7 @@ TEST(BadData, F7HuberLossIsHardlyMovedByOutliers) {
         std::find_if(c.stages.begin(), c.stages.end(), [](const Stage& stage) { return stage.name == "evolution"; });
     for (const TestResidual& t : evolution->tests) lightened += t.rows_lightened;
     EXPECT_EQ(lightened > 0, loss == Loss::huber);
-    return c.parameters.stress_ratio_max.value(0.70, c.parameters.shear_nu_c);
+    return c.law.parameters.stress_ratio_max.value(0.70, c.law.parameters.shear_nu_c);
   };
   const double clean = s_max(undisturbed, Loss::squares);
   const double squares = std::abs(s_max(tests, Loss::squares) - clean);

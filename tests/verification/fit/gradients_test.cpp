@@ -31,8 +31,9 @@ const std::vector<TestRecord>& few_rows() {
 }
 
 /// Largest error over the points; one random parameter of one random block at each.
-double worst(const std::vector<FreeParameter>& parameters, const std::vector<ResidualBlock>& blocks, std::uint64_t seed,
-             double least_nu = 1) {
+double worst(const Problem& problem, std::uint64_t seed, double least_nu = 1) {
+  const std::vector<FreeParameter>& parameters = problem.parameters;
+  const std::vector<ResidualBlock>& blocks = problem.blocks;
   testing::RandomPoints random(seed);
   double largest = 0;
   int checked = 0;
@@ -53,14 +54,9 @@ double worst(const std::vector<FreeParameter>& parameters, const std::vector<Res
 
 double worst_of_density_laws() {
   const std::vector<DensitySeries> series = isotropic_series(check_and_sort(few_rows()), {});
-  const StateLaw<double> law = published_parameters().isotropic;
-  const double nu = least_nu(series);
   double largest = 0;
-  for (const DensityProblem& problem : {coordination_problem("", series, law.coordination),
-                                        rattlers_problem("", series, law.rattlers, law.coordination.nu_c),
-                                        pressure_problem("", series, law.pressure)}) {
-    largest = std::max(largest, worst(problem.parameters, problem.blocks, 1, nu));
-  }
+  for (const StageDefinition& stage : state_law_stages(kUnloadingLaw, series, ""))
+    largest = std::max(largest, worst(problem_of(stage, published_parameters()), 1, stage.least_nu));
   return largest;
 }
 
@@ -70,14 +66,17 @@ double worst_of_shear() {
     e.push_back(0.01 * i);
     s.push_back(0.15 * (1 - std::exp(-40 * e.back())));
   }
-  const SaturationProblem problem = saturation_problem("d2", "s_par", e, s, 0, {});
-  return worst(problem.parameters, problem.blocks, 2);
+  return worst(saturation_problem("d2", "s_par", e, s, 0, {}), 2);
 }
 
 double worst_of_eq20() {
-  const std::vector<Eigen::Vector2d> values{{0.68, 0.19}, {0.74, 0.15}, {0.82, 0.13}};
-  const DensityLawProblem problem = density_law_problem("stress_ratio_max", {"a", "b", "c"}, {0, 1, 2}, values, 0.6653);
-  return worst(problem.parameters, problem.blocks, 3);
+  std::vector<ShearFit> fits;
+  for (const auto& [nu, s_max] : {std::pair{0.68, 0.19}, {0.74, 0.15}, {0.82, 0.13}}) {
+    fits.emplace_back();
+    fits.back().nu = nu;
+    fits.back().s_max = {s_max, kUndefined, Status::fitted, ""};
+  }
+  return worst(problem_of(density_law_stage(kShearQuantities[0], fits, {0, 1, 2}, 0.6653, {}), start_parameters()), 3);
 }
 
 double worst_of_evolution(Coupling coupling) {
@@ -86,8 +85,8 @@ double worst_of_evolution(Coupling coupling) {
   options.max_step = 1e-2;  // derivatives are those of the discrete integrator, whatever its step
   const LawParameters<double> start = testing::synthetic_truth();
   const auto trajectories = trajectories_of(check_and_sort(few_rows()), 0.67, options);
-  const EvolutionProblem problem = evolution_problem(trajectories, start, evolution_parameters(coupling), options);
-  return worst(problem.parameters, problem.blocks, 4, problem.parameters[2].upper + 1e-4);
+  const StageDefinition stage = evolution_stage(trajectories, {}, options);
+  return worst(problem_of(stage, start), 4, stage.least_nu);
 }
 
 TEST(FitGradients, F5) {

@@ -39,12 +39,12 @@ class Identifiability : public ::testing::TestWithParam<bool> {
       const std::string name = parameter_table()[i].name;
       for (const std::string& law : laws) {
         if (name.rfind(law, 0) != 0) continue;
-        const Estimate& e = c.estimates[i];
+        const Estimate& e = c.law.estimates[i];
         confident += e.status != Status::not_identified || std::isfinite(e.standard_error) || e.note.empty();
         EXPECT_EQ(e.status, Status::not_identified) << name << " = " << e.value << " +- " << e.standard_error;
         EXPECT_TRUE(std::isnan(e.standard_error)) << name;
         EXPECT_FALSE(e.note.empty()) << name;
-        EXPECT_EQ(c.covariance.row(static_cast<Eigen::Index>(i)).norm(), 0) << name;
+        EXPECT_EQ(c.law.covariance.row(static_cast<Eigen::Index>(i)).norm(), 0) << name;
       }
     }
     expect_figure("F6." + name_of_case + (GetParam() ? "_noisy" : "_exact") + ".confident", confident, 0);
@@ -55,7 +55,7 @@ class Identifiability : public ::testing::TestWithParam<bool> {
       const std::string name = parameter_table()[i].name;
       for (const std::string& law : laws) {
         if (name.rfind(law, 0) != 0) continue;
-        EXPECT_NE(c.estimates[i].status, Status::not_identified) << name << c.estimates[i].note;
+        EXPECT_NE(c.law.estimates[i].status, Status::not_identified) << name << c.law.estimates[i].note;
       }
     }
   }

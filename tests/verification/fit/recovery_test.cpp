@@ -35,17 +35,18 @@ TEST_P(ExactData, EveryStageTogetherFindsTheTruth) {
   calibration.coupling = GetParam();
   calibration.max_step = 1.2e-3;
   const fit::Calibration c = fit::calibrate(testing::synthetic_dataset(truth, options), calibration, {});
-  EXPECT_TRUE(c.converged);
-  const auto value = fields(c.parameters);
+  EXPECT_TRUE(c.law.converged);
+  const auto value = fields(c.law.parameters);
   const auto expected = fields(truth);
   double worst = 0;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string name = parameter_table()[i].name;
-    const fit::Status status = c.estimates[i].status;
-    if (status == fit::Status::not_identified || status == fit::Status::tied) continue;
+    const Status status = c.law.estimates[i].status;
+    if (status == Status::not_identified || status == Status::tied) continue;
     // In shear of exact Eq. (16) data P stays near the isotropic level: there is no steady pressure of its own to find.
     if (name.rfind("steady_pressure", 0) == 0) continue;
-    if (name.rfind("memory", 0) == 0) continue;  // of another law than the one that made the data; memory_fit_test.cpp has its own
+    if (name.rfind("memory", 0) == 0)
+      continue;  // of another law than the one that made the data; memory_fit_test.cpp has its own
     const double scale = *expected[i] != 0 ? std::abs(*expected[i]) : std::abs(*expected[i + 1]);
     worst = std::max(worst, std::abs(*value[i] - *expected[i]) / scale);
   }

@@ -26,11 +26,11 @@ TEST(FitThreads, SameBits) {
     many.threads = threads;
     const Calibration b = calibrate(tests, many, {});
     for (std::size_t i = 0; i < kParameterCount; ++i) {
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(*fields(a.parameters)[i]),
-                std::bit_cast<std::uint64_t>(*fields(b.parameters)[i]))
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(*fields(a.law.parameters)[i]),
+                std::bit_cast<std::uint64_t>(*fields(b.law.parameters)[i]))
           << parameter_table()[i].name << " with " << threads << " threads";
     }
-    EXPECT_EQ(a.covariance, b.covariance) << threads;
+    EXPECT_EQ(a.law.covariance, b.law.covariance) << threads;
     for (std::size_t s = 0; s < a.stages.size(); ++s) EXPECT_EQ(a.stages[s].iterations, b.stages[s].iterations);
   }
 }

@@ -1,0 +1,300 @@
+#include "fit/published/paper_claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "fit/statistics/curve_error.hpp"
+#include "model/student.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kExact = 1e-6;     // of kinematics: exact but for the sums of logarithmic strain
+constexpr double kScaledAt = 0.15;  // ln(nu/nu_c) at which Eq. (15) is compared: within the rows of every mode
+
+struct Measured {
+  double value = kNaN, standard_error = kNaN;
+};
+
+Measured mean_of(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  if (values.empty()) return {};
+  double sum = 0, squares = 0;
+  for (const double v : values) sum += v / n;
+  for (const double v : values) squares += (v - sum) * (v - sum);
+  return {sum, values.size() < 2 ? kNaN : std::sqrt(squares / (n - 1) / n)};
+}
+
+/// Tests of shear at constant volume of one mode and branch at one density, by seed.
+using BySeed = std::map<std::uint64_t, const TestRecord*>;
+using ByDensity = std::map<long, BySeed>;  // density in 1e-6
+
+ByDensity shear_tests(const std::vector<TestRecord>& tests, Mode mode, Branch branch) {
+  ByDensity found;
+  for (const TestRecord& test : tests) {
+    if (is_pure_shear(test) && test.path.segments.front().mode == mode && test.path.branch == branch)
+      found[std::lround(test.path.nu * 1e6)][test.packing.seed] = &test;
+  }
+  return found;
+}
+
+using Value = std::function<double(const TestRecord&)>;
+
+Value at_start(double Observation::*quantity) {
+  return [=](const TestRecord& test) { return test.rows.front().*quantity; };
+}
+
+Value when_steady(double Observation::*quantity, double from) {
+  return [=](const TestRecord& test) {
+    double sum = 0, rows = 0;
+    for (const Observation& row : test.rows) {
+      if (row.eps_dev < from) continue;
+      sum += row.*quantity;
+      ++rows;
+    }
+    return sum / rows;
+  };
+}
+
+/// a minus b over the packings that have both.
+std::vector<double> differences(const BySeed& a, const Value& of_a, const BySeed& b, const Value& of_b) {
+  std::vector<double> all;
+  for (const auto& [seed, test] : a) {
+    const auto other = b.find(seed);
+    if (other == b.end()) continue;
+    const double difference = of_a(*test) - of_b(*other->second);
+    if (std::isfinite(difference)) all.push_back(difference);
+  }
+  return all;
+}
+
+class Claims {
+ public:
+  /// A sign, or with `printed` a value.
+  void add(const std::string& where, const std::string& statement, double nu, Measured ours, std::size_t packings,
+           Printed printed = {}) {
+    if (!std::isfinite(ours.value)) return;
+    all.push_back({where, statement, nu, ours.value, ours.standard_error, printed.value, ""});
+    judge(all.back(), printed, packings);
+  }
+
+  /// Two values that are said to be the same, at every density that both have.
+  void add_equal(const std::string& where, const std::string& statement, const ByDensity& a, const ByDensity& b,
+                 const Value& value) {
+    for (const auto& [density, tests] : a) {
+      const auto other = b.find(density);
+      if (other == b.end()) continue;
+      const std::vector<double> d = differences(tests, value, other->second, value);
+      const Measured mean = mean_of(d);
+      if (d.empty()) continue;
+      all.push_back({where, statement, static_cast<double>(density) / 1e6, mean.value, mean.standard_error, 0, ""});
+      judge_equal(all.back(), d.size());
+    }
+  }
+
+  std::vector<Claim> all;
+};
+
+/// The first segment of the test is `mode` in its forward sense.
+bool compresses_z(const TestRecord& test, Mode mode) {
+  const PathSegment& segment = test.path.segments.front();
+  return segment.mode == mode && segment.direction.tensor(2, 2) < 0;
+}
+
+void add_kinematics(const std::vector<TestRecord>& tests, Claims& claims) {
+  struct Row {
+    Mode mode;
+    double rate, shape, lode;
+  };
+  // Table 1
+  for (const Row& row :
+       {Row{Mode::UNI, 1, 1, 60}, Row{Mode::D2, std::numbers::sqrt3, 0, 30}, Row{Mode::D3, 1.5, 1, 60}}) {
+    std::vector<double> rate, shape, lode;
+    for (const TestRecord& test : tests) {
+      if (!compresses_z(test, row.mode)) continue;
+      const auto last =
+          std::find_if(test.rows.rbegin(), test.rows.rend(), [](const auto& r) { return r.segment == 0; });
+      if (last == test.rows.rend() || !(last->eps_dev > 0)) continue;
+      rate.push_back(last->eps_dev / std::abs(last->strain.tensor(2, 2)));
+      shape.push_back(last->shape_strain);
+      lode.push_back(last->lode_strain);
+    }
+    const std::string mode = to_string(row.mode);
+    claims.add("Table 1", mode + ": deviatoric strain over strain of z", kNaN, mean_of(rate), rate.size(),
+               {row.rate, 0});
+    claims.add("Table 1", mode + ": shape factor of strain", kNaN, mean_of(shape), shape.size(), {row.shape, 0});
+    claims.add("Table 1", mode + ": Lode angle of strain [deg]", kNaN, mean_of(lode), lode.size(), {row.lode, 0});
+  }
+}
+
+void add_uniaxial_end(const std::vector<TestRecord>& tests, Claims& claims) {
+  std::vector<double> coordination;
+  for (const TestRecord& test : tests) {
+    if (!compresses_z(test, Mode::UNI)) continue;
+    const auto last = std::find_if(test.rows.rbegin(), test.rows.rend(), [](const auto& r) { return r.segment == 0; });
+    if (last != test.rows.rend() && std::abs(last->nu - 0.82) < 1e-3) coordination.push_back(last->C_star);
+  }
+  claims.add("Sec. 5.1", "UNI: C* at the largest density", 0.82, mean_of(coordination), coordination.size(),
+             {9.5, 0.05});
+}
+
+void add_branches(const std::vector<TestRecord>& tests, double steady_from, Claims& claims) {
+  const ByDensity unloading = shear_tests(tests, Mode::D2, Branch::unloading);
+  const ByDensity loading = shear_tests(tests, Mode::D2, Branch::loading);
+  for (const auto& [density, on_loading] : loading) {
+    const auto other = unloading.find(density);
+    if (other == unloading.end()) continue;
+    const auto d =
+        differences(on_loading, at_start(&Observation::C_star), other->second, at_start(&Observation::C_star));
+    claims.add("Fig. 4", "C* before shear: loading branch above unloading branch", static_cast<double>(density) / 1e6,
+               mean_of(d), d.size());
+  }
+  claims.add_equal("Fig. 5", "steady C* in D2: the same from both branches (difference)", loading, unloading,
+                   when_steady(&Observation::C_star, steady_from));
+  claims.add_equal("Fig. 8", "steady P* in D2: the same from both branches (difference)", loading, unloading,
+                   when_steady(&Observation::P_star, steady_from));
+  const auto drift = [&](const ByDensity& densities, double sign, const std::string& statement) {
+    if (densities.empty()) return;
+    const auto& [density, lowest] = *densities.begin();
+    std::vector<double> d =
+        differences(lowest, when_steady(&Observation::P_star, steady_from), lowest, at_start(&Observation::P_star));
+    for (double& x : d) x *= sign;
+    claims.add("Fig. 8", statement, static_cast<double>(density) / 1e6, mean_of(d), d.size());
+  };
+  drift(unloading, 1, "P* in D2 from the unloading branch: rises at the lowest density");
+  drift(loading, -1, "P* in D2 from the loading branch: falls at the lowest density");
+}
+
+void add_collapse(const std::vector<TestRecord>& tests, double steady_from, Claims& claims) {
+  const ByDensity D2 = shear_tests(tests, Mode::D2, Branch::unloading);
+  const ByDensity D3 = shear_tests(tests, Mode::D3, Branch::unloading);
+  claims.add_equal("Fig. 15", "steady s: D3 as D2 (difference)", D3, D2, when_steady(&Observation::s_par, steady_from));
+  claims.add_equal("Fig. 16", "steady F: D3 as D2 (difference)", D3, D2, when_steady(&Observation::F_par, steady_from));
+}
+
+/// Value of a curve of one mode with its error.
+Measured value_of(const CalibratedLaw* law, const DensityCurve& curve, double nu) {
+  if (law == nullptr || !has_values(*law, curve)) return {};
+  return {curve.of(law->parameters, nu), standard_error(*law, curve, nu)};
+}
+
+/// Difference of two fits; they are of the same packings, whose common scatter this counts twice.
+Measured operator-(const Measured& a, const Measured& b) {
+  return {a.value - b.value, std::hypot(a.standard_error, b.standard_error)};
+}
+
+void add_orders(const CalibratedLaw& iso, const std::vector<Description>& descriptions, std::size_t packings,
+                Claims& claims) {
+  const auto mode = [&](const char* name) -> const CalibratedLaw* {
+    const auto d =
+        std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& x) { return x.name == name; });
+    return d == descriptions.end() ? nullptr : &d->calibration.law;
+  };
+  const CalibratedLaw *uni = mode("UNI"), *d3 = mode("D3");
+  using P = const LawParameters<double>&;
+  const auto jamming = [&](const std::string& what, const DensityCurve& unloading, const DensityCurve& steady_state) {
+    const Measured a = value_of(&iso, unloading, 0), b = value_of(uni, unloading, 0),
+                   c = value_of(&iso, steady_state, 0), d = value_of(d3, steady_state, 0);
+    claims.add("Table 2", "nu_c of " + what + ": ISO above UNI", kNaN, a - b, packings);
+    claims.add("Table 2", "nu_c of " + what + ": UNI above D2", kNaN, b - c, packings);
+    claims.add("Table 2", "nu_c of " + what + ": ISO above D2", kNaN, a - c, packings);
+    const Measured difference = d - c;
+    if (!std::isfinite(difference.value)) return;
+    claims.all.push_back({"Table 2", "nu_c of " + what + ": D3 as D2 (difference)", kNaN, difference.value,
+                          difference.standard_error, 0, ""});
+    judge_equal(claims.all.back(), packings);
+  };
+  jamming("C*", {"", "", {"coordination"}, [](P p, double) { return p.isotropic.coordination.nu_c; }},
+          {"", "", {"steady_coordination"}, [](P p, double) { return p.steady.coordination.nu_c; }});
+  jamming("P*", {"", "", {"pressure"}, [](P p, double) { return p.isotropic.pressure.nu_c; }},
+          {"", "", {"steady_pressure"}, [](P p, double) { return p.steady.pressure.nu_c; }});
+
+  const auto named = [](const char* quantity) {
+    return *std::find_if(density_curves().begin(), density_curves().end(),
+                         [&](const DensityCurve& c) { return std::string(quantity) == c.quantity; });
+  };
+  const Measured rattlers = value_of(&iso, named("rattler_fraction"), 0.82);
+  claims.add("Fig. 7", "rattlers: steady D2 above ISO", 0.82,
+             value_of(&iso, named("steady_rattler_fraction"), 0.82) - rattlers, packings);
+  claims.add("Fig. 7", "rattlers: UNI above ISO", 0.82, value_of(uni, named("rattler_fraction"), 0.82) - rattlers,
+             packings);
+
+  const DensityCurve scaled{"", "", {"pressure"}, [](P p, double x) {
+                              const auto& law = p.isotropic.pressure;
+                              return law.p0 * x * (1 - law.gamma_p * x);
+                            }};
+  const DensityCurve scaled_steady{"", "", {"steady_pressure"}, [](P p, double x) {
+                                     const auto& law = p.steady.pressure;
+                                     return law.p0 * x * (1 - law.gamma_p * x);
+                                   }};
+  const std::string where = fmt::format("scaled pressure at ln(nu/nu_c) = {}: ", kScaledAt);
+  const Measured u = value_of(uni, scaled, kScaledAt);
+  claims.add("Fig. 10", where + "ISO above UNI", kNaN, value_of(&iso, scaled, kScaledAt) - u, packings);
+  claims.add("Fig. 10", where + "UNI above D2", kNaN, u - value_of(&iso, scaled_steady, kScaledAt), packings);
+}
+
+/// Eq. (19): one A* = a0 F_dev in both rows; ours are two, a B* F_dev. The error of B* is small beside that of a.
+void add_anisotropy(const CalibratedLaw& law, std::size_t packings, Claims& claims) {
+  constexpr double nu = 0.74;
+  if (!has_values(law, "pressure") || nu < law.range.nu_min || nu > law.range.nu_max) return;
+  const double B = law.parameters.isotropic.B_star(nu);
+  for (const auto& [name, statement] :
+       {std::pair{"anisotropy.a1", "A1*/F_dev, the pressure's row; the paper has one A"},
+        {"anisotropy.a2", "A2*/F_dev, the row of deviatoric stress; the paper has one A"}}) {
+    const Estimate& a = law.estimates[parameter_index(name)];
+    if (a.status == Status::not_identified) continue;
+    claims.add("Eq. 19", statement, nu, {a.value * B, a.standard_error * B}, packings, {0.137, 0.0005});
+  }
+}
+
+}  // namespace
+
+void judge(Claim& claim, Printed printed, std::size_t packings) {
+  const double n = static_cast<double>(packings);
+  claim.published = printed.value;
+  const bool is_sign = std::isnan(printed.value);
+  const double range = packings < 2 ? kNaN : student_95(n - 1) * claim.standard_error;
+  if (!is_sign && printed.half_digit == 0) {
+    claim.verdict =
+        std::abs(claim.ours - printed.value) <= kExact * std::max(1.0, printed.value) ? "agrees" : "differs";
+  } else if (!std::isfinite(range)) {
+    claim.verdict = "no error";
+  } else if (is_sign) {
+    claim.verdict = claim.ours > range ? "agrees" : claim.ours < -range ? "differs" : "undecided";
+  } else {
+    const double allowed = range * std::sqrt(n + 1) + printed.half_digit;
+    claim.verdict = std::abs(claim.ours - printed.value) <= allowed ? "agrees" : "differs";
+  }
+}
+
+void judge_equal(Claim& claim, std::size_t packings) {
+  claim.published = 0;
+  const double range = packings < 2 ? kNaN : student_95(static_cast<double>(packings) - 1) * claim.standard_error;
+  if (!std::isfinite(range))
+    claim.verdict = "no error";
+  else
+    claim.verdict = std::abs(claim.ours) <= range ? "agrees" : "differs";
+}
+
+std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const CalibratedLaw& law,
+                             const std::vector<Description>& descriptions, double steady_from) {
+  std::set<std::uint64_t> seeds;
+  for (const TestRecord& test : tests) seeds.insert(test.packing.seed);
+  Claims claims;
+  add_kinematics(tests, claims);
+  add_uniaxial_end(tests, claims);
+  add_orders(law, descriptions, seeds.size(), claims);
+  add_branches(tests, steady_from, claims);
+  add_collapse(tests, steady_from, claims);
+  add_anisotropy(law, seeds.size(), claims);
+  return claims.all;
+}
+
+}  // namespace grainlaw::fit

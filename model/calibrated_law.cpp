@@ -1,0 +1,98 @@
+#include "model/calibrated_law.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/student.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw {
+namespace {
+
+/// Whether `name`, of parameter_table(), is `group` or one of its parameters.
+bool is_of(std::string_view name, std::string_view group) {
+  return name.starts_with(group) && (name.size() == group.size() || name[group.size()] == '.');
+}
+
+bool has_value(const CalibratedLaw& law, std::size_t i) { return law.estimates[i].status != Status::not_identified; }
+
+/// Parameters, or groups of them, that the equations of `rung` read.
+std::vector<std::string_view> read_by(Rung rung, Coupling coupling) {
+  std::vector<std::string_view> groups{"coordination",     "rattlers",    "pressure",   "shear.nu_c",
+                                       "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"};
+  if (rung == Rung::memory)
+    groups.insert(groups.end(), {"steady_coordination", "steady_rattlers", "steady_pressure", "memory"});
+  if (rung != Rung::reduced) groups.push_back(coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2");
+  return groups;
+}
+
+/// True for the alpha of an Eq. (20) whose Q_c is zero: the law does not depend on it.
+bool without_exponential(const CalibratedLaw& law, std::size_t i) {
+  const ParameterInfo& info = parameter_table()[i];
+  const std::string name = info.name;
+  if (info.equation != std::string("20") || !name.ends_with(".alpha")) return false;
+  const std::size_t Q_c = parameter_index(name.substr(0, name.find('.')) + ".Q_c");
+  return has_value(law, Q_c) && *fields(law.parameters)[Q_c] == 0;
+}
+
+}  // namespace
+
+double Estimate::half_width() const {
+  if (!std::isfinite(standard_error) || std::isnan(degrees_of_freedom)) return std::nan("");
+  return student_95(degrees_of_freedom) * standard_error;
+}
+
+bool has_values(const CalibratedLaw& law, std::string_view group) {
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    if (is_of(parameter_table()[i].name, group) && !has_value(law, i)) return false;
+  }
+  return true;
+}
+
+std::optional<std::size_t> missing_parameter(const CalibratedLaw& law, Rung rung) {
+  const std::vector<std::string_view> needed = read_by(rung, law.coupling);
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const bool is_needed = std::any_of(needed.begin(), needed.end(),
+                                       [&](std::string_view group) { return is_of(parameter_table()[i].name, group); });
+    if (is_needed && !has_value(law, i) && !without_exponential(law, i)) return i;
+  }
+  return std::nullopt;
+}
+
+void require_parameters(const CalibratedLaw& law, Rung rung, const std::string& name) {
+  const auto missing = missing_parameter(law, rung);
+  if (!missing) return;
+  const std::string& note = law.estimates[*missing].note;
+  throw InvalidInput(fmt::format(
+      "{}: parameters.{}: is not identified and the {} model needs it{}{}; calibrate with tests that contain "
+      "it",
+      name, parameter_table()[*missing].name, to_string(rung), note.empty() ? "" : ": ", note));
+}
+
+std::optional<Rung> richest_rung(const CalibratedLaw& law) {
+  std::optional<Rung> richest;
+  for (const Rung rung : kRungs) {
+    if (!missing_parameter(law, rung)) richest = rung;
+  }
+  return richest;
+}
+
+std::vector<std::size_t> uncertain_parameters(const CalibratedLaw& law) {
+  std::vector<std::size_t> indices;
+  for (Eigen::Index i = 0; i < law.covariance.rows(); ++i) {
+    if (law.covariance(i, i) > 0) indices.push_back(static_cast<std::size_t>(i));
+  }
+  return indices;
+}
+
+std::string available_bands(const CalibratedLaw& law) {
+  if (uncertain_parameters(law).empty()) return "none: the parameters have no covariance; calibrate again";
+  if (!std::isfinite(law.scatter.compression))
+    return "95 %, of the mean curve only: the parameters have no scatter between packings; calibrate again, with two "
+           "seeds or more";
+  return "95 %, of the mean curve and of a single run";
+}
+
+}  // namespace grainlaw

@@ -1,0 +1,87 @@
+#pragma once
+// The law with the values that a calibration gave it, and how well it knows them: what fit::calibrate() returns, what
+// parameters.json holds (parameters_file.hpp) and what predictions read.
+
+#include <Eigen/Core>
+#include <array>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/law.hpp"
+#include "model/parameters.hpp"
+
+namespace grainlaw {
+
+enum class Status {
+  fitted,          ///< free in the last stage that it appears in
+  fixed,           ///< not fitted by decision (Eq. (20)'s nu_c)
+  tied,            ///< follows from others by an identity
+  at_bound,        ///< ended on a physical bound; no standard error
+  not_identified,  ///< the data do not contain it; no value and no standard error
+};
+constexpr auto names_of(Status) { return std::array{"fitted", "fixed", "tied", "at_bound", "not_identified"}; }
+
+/// One parameter as the data determine it.
+struct Estimate {
+  double value = 0;                                                  ///< not to be read when not identified [-]
+  double standard_error = std::numeric_limits<double>::quiet_NaN();  ///< over packings; NaN unless fitted or tied [-]
+  Status status = Status::not_identified;
+  std::string note;  ///< why, e.g. which experiment would identify it; may be empty
+  double degrees_of_freedom = std::numeric_limits<double>::quiet_NaN();  ///< of the standard error; NaN without one
+
+  /// Half of the 95 % interval, by Student's t; NaN without an error.
+  double half_width() const;
+};
+
+/// How far runs of one path on different packings lie apart: what a single run adds to the error of a mean curve. Standard
+/// deviations; NaN where no path was run on two packings.
+struct PackingScatter {
+  int packings = 0;                                               ///< most runs of one path
+  int degrees_of_freedom = 0;                                     ///< runs beyond the first of each path, all paths
+  double compression = std::numeric_limits<double>::quiet_NaN();  ///< of P*/B*, B* of ISO unloading [-]
+  double s_par = std::numeric_limits<double>::quiet_NaN();        ///< of s_par [-]
+  double F_par = std::numeric_limits<double>::quiet_NaN();        ///< of F_par [-]
+};
+
+/// What the calibration has seen; outside, predictions are extrapolations. Without limits by default.
+struct ValidRange {
+  double nu_min = 0, nu_max = 1;                    ///< volume fraction of the rows that entered [-]
+  double eps_dev_max = 1e300, eps_vol_max = 1e300;  ///< largest |strain| from the start of a test [-]
+};
+
+struct CalibratedLaw {
+  Coupling coupling = Coupling::energy;
+  LawParameters<double> parameters;                 ///< not identified ones stay at their start and must not be read
+  std::array<Estimate, kParameterCount> estimates;  ///< in the order of parameter_table()
+  Eigen::MatrixXd covariance;  ///< kParameterCount square, zero where there is no error; its degrees of freedom are the
+                               ///< estimates'
+  PackingScatter scatter;      ///< between runs of one path on different packings
+  ValidRange range{0, 0, 0, 0};  ///< of the rows that entered
+  bool converged = false;        ///< all stages of the fit
+  std::string dataset_digest;    ///< of the data set that was fitted; may be empty
+};
+
+/// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
+bool has_values(const CalibratedLaw& law, std::string_view group);
+
+/// Index in parameter_table() of the first parameter that `rung` needs and that has no value; nothing where the law can
+/// serve the rung.
+std::optional<std::size_t> missing_parameter(const CalibratedLaw& law, Rung rung);
+
+/// Throws InvalidInput when `rung` needs a parameter that has no value, naming it and what would identify it. `name`
+/// stands for the law in the message, e.g. the file that it was read from.
+void require_parameters(const CalibratedLaw& law, Rung rung, const std::string& name);
+
+/// The richest rung that the law can serve; nothing when even the reduced one has parameters without a value.
+std::optional<Rung> richest_rung(const CalibratedLaw& law);
+
+/// Indices in parameter_table() of the parameters that have an error: those that bands are made of.
+std::vector<std::size_t> uncertain_parameters(const CalibratedLaw& law);
+
+/// One line: which bands about a predicted curve the law's errors allow, or why there are none.
+std::string available_bands(const CalibratedLaw& law);
+
+}  // namespace grainlaw

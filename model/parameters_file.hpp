@@ -1,0 +1,28 @@
+#pragma once
+// parameters.json: the calibrated law as others read it. Doubles bit for bit; null where a parameter is not identified.
+
+#include <filesystem>
+
+#include "model/calibrated_law.hpp"
+#include "model/files/json_document.hpp"
+
+namespace grainlaw {
+
+struct ParametersFile {
+  CalibratedLaw law;
+  Json provenance;  ///< who made it, when and from what; null when not said
+};
+
+void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters);
+
+/// Throws InvalidInput naming file and key. Parameters without value keep the table's start and must not be read.
+ParametersFile read_parameters(const std::filesystem::path& file);
+
+/// An estimate as it stands there and in calibration.json: {value, standard_error, degrees_of_freedom, interval_95, status,
+/// note}; value null when not identified, interval_95 left out without an error, note when empty.
+OrderedJson estimate_to_json(const Estimate& estimate);
+
+/// Throws InvalidInput when the value is null although the status promises one, or the reverse.
+Estimate estimate_from_json(const Json& object);
+
+}  // namespace grainlaw

@@ -1,0 +1,134 @@
+#include "fit/statistics/search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+#include "fit/statistics/stage_fit.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+ResidualBlock values(const std::vector<double>& y) {
+  ResidualBlock block;
+  block.test = "values";
+  block.weight = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(y.size()));
+  block.channels = {{"y", 0, static_cast<int>(y.size()), 0, 10}};
+  block.evaluate = [y](const double* x, double* r, double* J) {
+    for (std::size_t i = 0; i < y.size(); ++i) r[i] = *x - y[i];
+    if (J != nullptr) std::fill_n(J, y.size(), 1.0);
+    return true;
+  };
+  return block;
+}
+
+Solution huber(const std::vector<double>& y) {
+  return solve_huber({{{"x", 0, -100, 100, 1}}, {values(y)}}, 1, "huber", {});
+}
+
+// Seven values of scatter s = 1.4826 median|y - x| and one far away: sum of psi = 0, psi(u) = u up to c s, then c s.
+TEST(Robust, AnOutlierPullsByNoMoreThanItsShare) {
+  const std::vector<double> y{-3, -2, -1, 0, 1, 2, 3};
+  for (const double far : {50.0, 5000.0}) {
+    std::vector<double> with = y;
+    with.push_back(far);
+    const Solution s = huber(with);
+    EXPECT_TRUE(s.converged) << s.termination;
+    std::vector<double> off;
+    for (const double v : with) off.push_back(std::abs(s.x(0) - v));
+    std::sort(off.begin(), off.end());
+    const double reach = 1.345 * 1.4826 * off[4];
+    double pull = 0;
+    for (const double v : with) pull += std::clamp(s.x(0) - v, -reach, reach);
+    EXPECT_NEAR(pull, 0, 0.05 * reach) << far;
+    EXPECT_LT(s.x(0), 1) << "their mean is " << far / 8;
+    EXPECT_NEAR(s.weight(7), std::sqrt(reach / (far - s.x(0))), 2e-3);
+  }
+}
+
+// Of white noise, here its quantiles: V = E psi^2/(n P(|u| < c)^2), 1/.95 of that of the mean (Huber 1964).
+TEST(Robust, TheErrorIsThatOfItsEstimate) {
+  constexpr int n = 400;
+  const boost::math::normal normal;
+  std::vector<ResidualBlock> packings;
+  for (int i = 0; i < n; ++i) {
+    packings.push_back(values({quantile(normal, (i + 0.5) / n)}));
+    packings.back().cluster = i;
+  }
+  const StageFit fit = fit_stage("huber", "", {{{"x", 0, -100, 100, 1}}, packings, Loss::huber}, "", 1, {});
+  const double error = fit.stage.estimates[0].estimate.standard_error;
+  EXPECT_NEAR(n * error * error, 1 / 0.95, 0.01);
+}
+
+TEST(Robust, WithoutOutliersItIsTheMean) {
+  const Solution s = huber({1, 2, 3, 4, 1, 2, 3, 4});
+  EXPECT_NEAR(s.x(0), 2.5, 1e-7);  // about the square root of machine precision: the cost feels no less
+  EXPECT_EQ(s.weight.minCoeff(), 1);
+}
+
+TEST(Robust, ExactDataKeepTheirWeights) {
+  const Solution s = huber({2, 2, 2, 2});
+  EXPECT_NEAR(s.x(0), 2, 1e-9);
+  EXPECT_EQ(s.weight.minCoeff(), 1);
+}
+
+/// (y^2 - 1)^2 + (0.3 (y + 1))^2 is zero at -1 and has another minimum near +1.
+ResidualBlock two_minima() {
+  ResidualBlock block;
+  block.test = "two";
+  block.weight = Eigen::VectorXd::Ones(2);
+  block.channels = {{"y", 0, 2, 0, 1}};
+  block.evaluate = [](const double* y, double* r, double* J) {
+    r[0] = *y * *y - 1;
+    r[1] = 0.3 * (*y + 1);
+    if (J != nullptr) J[0] = 2 * *y, J[1] = 0.3;
+    return true;
+  };
+  return block;
+}
+
+TEST(ManyStarts, FindTheLowerOfTwoMinima) {
+  const std::vector<FreeParameter> from{{"y", 0, -3, 3, 3}};
+  const auto run = [&](double start, int starts, StartSearch& search) {
+    std::vector<FreeParameter> p = from;
+    p[0].start = start;
+    return minimise({p, {two_minima()}}, starts, 1, "two", {}, search);
+  };
+  StartSearch one, many;
+  const Solution upper = run(0.8, 1, one);
+  EXPECT_GT(upper.x(0), 0.8);
+  EXPECT_EQ(one.tried, 1);
+  const Solution lower = run(0, 20, many);
+  EXPECT_NEAR(lower.x(0), -1, 1e-6);
+  EXPECT_LT(lower.final_cost, upper.final_cost);
+  EXPECT_EQ(many.tried, 20);
+  EXPECT_GT(many.at_minimum, 0);
+  EXPECT_LT(many.at_minimum, 20);
+  EXPECT_NEAR(many.next_cost, upper.final_cost, 1e-9);
+}
+
+TEST(ManyStarts, LieWithinTheirRangeAndTheFirstIsTheGivenOne) {
+  const std::vector<FreeParameter> from{{"pressure.p0", 0.04, 0, 1, 0.04},
+                                        {"pressure.nu_c", 0.665, 0.5, 0.668, 0.6},
+                                        {"fabric_max.Q_limit", 0, 0, 1, 0.3}};
+  EXPECT_EQ(start_number(from, 0)[0].start, 0.04);
+  double least = 1, largest = 0;
+  for (int i = 1; i < 200; ++i) {
+    const auto p = start_number(from, i);
+    least = std::min(least, p[0].start);
+    largest = std::max(largest, p[0].start);
+    EXPECT_NEAR(p[1].start, 0.665, 0.005);
+    EXPECT_LE(p[1].start, 0.668);
+    EXPECT_GE(p[2].start, 0);
+    EXPECT_LE(p[2].start, 0.1);
+    EXPECT_EQ(p[0].start, start_number(from, i)[0].start);
+  }
+  EXPECT_GT(least, 0.04 / 3);
+  EXPECT_LT(least, 0.04 / 2.8);
+  EXPECT_LT(largest, 0.04 * 3);
+  EXPECT_GT(largest, 0.04 * 2.8);
+}
+
+}  // namespace
+}  // namespace grainlaw::fit

@@ -1,0 +1,93 @@
+#include "fit/published/verdicts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit/staged_laws.hpp"
+#include "model/student.hpp"
+
+namespace grainlaw::fit {
+namespace {
+
+/// The published laws of `mode`, the parameters of `groups` with errors of 1 %.
+Calibration published(const std::string& mode, const std::vector<std::string>& groups) {
+  Calibration c = nothing_known();
+  c.law.parameters = published_parameters(mode);
+  c.law.range.nu_min = 0.69;
+  c.law.range.nu_max = 0.81;
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const std::string name = parameter_table()[i].name;
+    if (std::find(groups.begin(), groups.end(), name.substr(0, name.find('.'))) == groups.end()) continue;
+    const double value = *fields(c.law.parameters)[i], error = 0.01 * std::max(value, 0.1);
+    c.law.estimates[i] = {value, error, Status::fitted, ""};
+    c.law.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = error * error;
+  }
+  return c;
+}
+
+const Verdict& find(const std::vector<Verdict>& all, const std::string& mode, const std::string& quantity) {
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const Verdict& v) { return v.mode == mode && v.quantity == quantity; });
+  if (at == all.end()) throw std::logic_error(mode + " " + quantity);
+  return *at;
+}
+
+TEST(Verdicts, AgreeWithinTheRangeOfStudentsT) {
+  const std::size_t packings = 5;
+  const double limit = student_95(4) * std::sqrt(6.0);
+  for (const double errors : {0.0, 0.99 * limit, -0.99 * limit, 1.01 * limit, -1.01 * limit}) {
+    Calibration c = published("", {"coordination"});
+    const std::size_t i = parameter_index("coordination.C1");
+    c.law.estimates[i].value += errors * c.law.estimates[i].standard_error;
+    const Verdict v = find(verdicts_of(c.law, {}, packings), "ISO", "coordination.C1");
+    EXPECT_NEAR(v.distance, errors / std::sqrt(6.0), 1e-9);
+    EXPECT_EQ(v.verdict, std::abs(errors) < limit ? "agrees" : "differs") << errors;
+  }
+}
+
+TEST(Verdicts, SayWhatCannotBeJudged) {
+  Calibration c = published("", {"coordination"});
+  c.law.estimates[parameter_index("coordination.alpha")].standard_error = std::nan("");
+  const std::vector<Verdict> all = verdicts_of(c.law, {}, 5);
+  EXPECT_EQ(find(all, "ISO", "coordination.alpha").verdict, "no error");
+  EXPECT_EQ(find(all, "ISO", "pressure.p0").verdict, "not identified");
+  EXPECT_TRUE(std::isnan(find(all, "ISO", "pressure.p0").ours));
+  for (const Verdict& v : verdicts_of(c.law, {}, 1)) EXPECT_NE(v.verdict, "agrees") << v.quantity;
+}
+
+TEST(Verdicts, AParameterOnItsBoundHasNoDistance) {
+  Calibration c = published("", {"coordination"});
+  Estimate& bound = c.law.estimates[parameter_index("coordination.alpha")];
+  bound.standard_error = 0;
+  bound.value *= 1.5;
+  const Verdict v = find(verdicts_of(c.law, {}, 5), "ISO", "coordination.alpha");
+  EXPECT_TRUE(std::isnan(v.distance)) << "a number that no file could hold: " << v.distance;
+  EXPECT_EQ(v.verdict, "no error");
+}
+
+TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
+  const std::vector<Description> modes{
+      {"UNI", published("UNI", {"coordination", "rattlers", "pressure"})},
+      {"D3", published("D3", {"steady_coordination", "steady_rattlers", "steady_pressure", "fabric_max"})}};
+  const std::vector<Verdict> all =
+      verdicts_of(published("", {"coordination", "steady_coordination", "stress_rate"}).law, modes, 5);
+  EXPECT_EQ(find(all, "UNI", "coordination.C1").published, 8.37);
+  EXPECT_EQ(find(all, "D3", "steady_pressure.nu_c").published, 0.6583);
+  EXPECT_EQ(find(all, "ISO", "coordination.C1").published, 8.2720);
+  EXPECT_EQ(find(all, "D2", "steady_coordination.C1").published, 7.9219);
+  EXPECT_EQ(find(all, "D3", "fabric_max.Q_c").published, 0.1694);
+  // curves at the densities that the rows reach, and only of laws that are known
+  std::vector<double> densities;
+  for (const Verdict& v : all) {
+    if (!v.is_parameter && v.mode == "UNI" && v.quantity == "P_star") densities.push_back(v.nu);
+    EXPECT_TRUE(v.is_parameter || v.verdict == "agrees") << v.mode << v.quantity;
+  }
+  EXPECT_EQ(densities, (std::vector<double>{0.70, 0.74, 0.80}));
+  EXPECT_THROW(find(all, "UNI", "steady_coordination.C1"), std::logic_error);
+  EXPECT_THROW(find(all, "D3", "coordination.C1"), std::logic_error);
+}
+
+}  // namespace
+}  // namespace grainlaw::fit
