@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/commands/study_output.hpp"
+#include "chain/studies/study_json.hpp"
 #include "model/parameters_file.hpp"
 #include "model/files/output_folder.hpp"
 #include "model/vocabulary/error.hpp"
