@@ -2,23 +2,80 @@
 // State of the law, the direction in which a path drives it, and what a spin does to it. Compression positive,
 // dimensionless (* dropped); deviators are the 5-vectors of tensor.hpp.
 //   L = D + W:  dx = -tr D de,  N = -D'/|D|_dev,  W a = w x a
-//   Jaumann:    da/dt = (da/dt)_law + W a - a W   for sigma', F', s_r and E
+//   Jaumann:    da/dt = (da/dt)_law + W a - a W   for every deviator of the state
 
 #include <Eigen/Geometry>
+#include <cstddef>
+#include <type_traits>
 
 #include "model/vocabulary/tensor.hpp"
 
 namespace grainlaw {
 
-/// State of the law, or its rate.
+/// State of the law, or its rate: one vector (as_vector) whose parts have names. A part is a number or a deviator, zero unless
+/// given. A new variable is a member here and its line in for_each_part().
 template <class T>
 struct LawState {
-  T P{};                                  ///< pressure P* [-]
-  Deviator<T> sigma;                      ///< deviatoric stress times 2<r>/k, compression positive [-]
-  Deviator<T> F;                          ///< deviatoric fabric, compression positive [-]
-  Deviator<T> s_r = Deviator<T>::Zero();  ///< sigma'/P at the last reversal, zero when virgin; read by Rung::memory [-]
-  Deviator<T> E = Deviator<T>::Zero();    ///< fading memory of the direction of shear, |E| <= 1, zero when virgin; read by Rung::memory [-]
+  T P{};                                    ///< pressure P* [-]
+  Deviator<T> sigma = Deviator<T>::Zero();  ///< deviatoric stress times 2<r>/k, compression positive [-]
+  Deviator<T> F = Deviator<T>::Zero();      ///< deviatoric fabric, compression positive [-]
+  // read by Rung::memory alone, zero when virgin
+  Deviator<T> s_r = Deviator<T>::Zero();  ///< sigma'/P at the last reversal [-]
+  Deviator<T> E = Deviator<T>::Zero();    ///< fading memory of the direction of shear, |E| <= 1 [-]
 };
+
+/// What there is to say of a part.
+struct StatePart {
+  const char* name;  ///< for messages
+  bool has_rate;     ///< false: only reversals and spin change it
+  double typical;    ///< magnitude in steady shear [-]
+  bool of_P;         ///< `typical` is in units of P
+};
+
+/// The table of the parts: calls visit(StatePart, part of each of `states`) for one after the other. Always inlined: called, it
+/// would cost a rate of the law a tenth.
+template <class Visit, class... States>
+[[gnu::always_inline]] inline void for_each_part(const Visit& visit, States&... states) {
+  //               name      has_rate  typical  of_P
+  visit(StatePart{"P*", true, 1, true}, states.P...);
+  visit(StatePart{"sigma'*", true, 0.1, true}, states.sigma...);
+  visit(StatePart{"F'", true, 0.1, false}, states.F...);
+  visit(StatePart{"s_r", false, 0.1, false}, states.s_r...);
+  visit(StatePart{"E", true, 0.1, false}, states.E...);
+}
+
+/// Numbers of a state.
+inline constexpr std::size_t kStateSize = sizeof(LawState<double>) / sizeof(double);
+template <class T>
+using StateVector = Eigen::Matrix<T, static_cast<int>(kStateSize), 1>;
+
+/// All numbers of `y`, in the order of the members.
+template <class T>
+Eigen::Map<StateVector<T>> as_vector(LawState<T>& y) {
+  static_assert(sizeof(LawState<T>) == kStateSize * sizeof(T), "nothing but T in a state, without gaps");
+  return Eigen::Map<StateVector<T>>(reinterpret_cast<T*>(&y));
+}
+template <class T>
+Eigen::Map<const StateVector<T>> as_vector(const LawState<T>& y) {
+  static_assert(sizeof(LawState<T>) == kStateSize * sizeof(T), "nothing but T in a state, without gaps");
+  return Eigen::Map<const StateVector<T>>(reinterpret_cast<const T*>(&y));
+}
+
+/// Scalar conversion, e.g. to dual numbers with zero derivative.
+template <class T>
+LawState<T> cast(const LawState<double>& y) {
+  LawState<T> converted;
+  as_vector(converted) = as_vector(y).template cast<T>();
+  return converted;
+}
+
+/// a + c b.
+template <class T>
+LawState<T> moved(const LawState<T>& a, double c, const LawState<T>& b) {
+  LawState<T> sum;
+  as_vector(sum) = as_vector(a) + c * as_vector(b);
+  return sum;
+}
 
 /// Direction of a straight segment as the law needs it, per unit of the path parameter.
 struct LawDirection {
@@ -59,14 +116,15 @@ Deviator<T> corotation(const Eigen::Vector3d& spin, const Deviator<T>& q) {
   return deviator<T>(Matrix3<T>(W * a - a * W));
 }
 
-/// Adds the corotational terms of `direction` to the rate of `y`.
+/// Adds the corotational terms of `direction` to the rate of `y`: of every deviator.
 template <class T>
 void add_corotation(const LawState<T>& y, const LawDirection& direction, LawState<T>& rate) {
   if (direction.spin.isZero(0)) return;
-  rate.sigma += corotation(direction.spin, y.sigma);
-  rate.F += corotation(direction.spin, y.F);
-  rate.s_r += corotation(direction.spin, y.s_r);
-  rate.E += corotation(direction.spin, y.E);
+  for_each_part(
+      [&direction]<class Part>(const StatePart&, const Part& of_y, Part& of_rate) {
+        if constexpr (!std::is_same_v<Part, T>) of_rate += corotation(direction.spin, of_y);
+      },
+      y, rate);
 }
 
 }  // namespace grainlaw

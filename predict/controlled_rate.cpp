@@ -68,7 +68,7 @@ ControlledRate::Free ControlledRate::residual(const LawState<double>& state, con
 }
 
 ControlledState ControlledRate::operator()(double e, const ControlledState& y) {
-  moduli_ = law_moduli(parameters_, nu_0_ * std::exp(-y.strain.trace()), rung_);
+  moduli_ = law_moduli(parameters_, y.nu(nu_0_), rung_);
   const Eigen::Index count = a_.size();
   Free wanted(count);
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -2,8 +2,7 @@
 // The rate of strain that keeps to a segment's conditions, and the rate of the law with it; see mixed_control.hpp.
 
 #include <Eigen/Dense>
-#include <array>
-#include <vector>
+#include <cmath>
 
 #include "model/law.hpp"
 #include "model/vocabulary/path.hpp"
@@ -15,6 +14,8 @@ struct ControlledState {
   LawState<double> law;
   Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
   double shear_path = 0;
+
+  double nu(double nu_0) const { return nu_0 * std::exp(-strain.trace()); }  ///< where it is nu_0 at zero strain [-]
 };
 
 class ControlledRate {

@@ -10,9 +10,7 @@
 
 #include "model/vocabulary/error.hpp"
 #include "predict/controlled_rate.hpp"
-#include "predict/solvers/cvode.hpp"
 #include "predict/path_integration.hpp"
-#include "predict/path_states.hpp"
 
 namespace grainlaw::predict {
 namespace {
@@ -21,7 +19,7 @@ constexpr std::size_t kSize = kUnknowns + 7;  // the law's, six strains, shear p
 constexpr double kVanished = 1e-12;           // of the start's P: unjammed
 
 void put(const ControlledState& y, double* out) {
-  std::ranges::copy(packed(y.law), out);
+  pack(y.law, out);
   for (std::size_t c = 0; c < 6; ++c) out[kUnknowns + c] = y.strain(kComponentIndex[c][0], kComponentIndex[c][1]);
   out[kSize - 1] = y.shear_path;
 }
@@ -43,7 +41,7 @@ double progress(const PathSegment& segment, const ControlledState& start, const 
     case ExtentKind::eps_vol:
       return std::abs((y.strain - start.strain).trace());
     case ExtentKind::target_nu:
-      return nu_0 * std::exp(-y.strain.trace());
+      return y.nu(nu_0);
     case ExtentKind::target_eps_dev:
       return deviatoric_norm(y.strain);
     case ExtentKind::target_P_star:
@@ -88,7 +86,7 @@ class ControlledWalk {
  private:
   double jammed_margin(const ControlledState& y) const {
     const double margin = std::min(y.law.P - P_floor_, least_principal_stress(y.law.P, y.law.sigma));
-    return nu_jamming_ > 0 ? std::min(margin, nu_0_ * std::exp(-y.strain.trace()) - nu_jamming_) : margin;
+    return nu_jamming_ > 0 ? std::min(margin, y.nu(nu_0_) - nu_jamming_) : margin;
   }
   double goal_margin(const ControlledState& y) const {
     return sense_ * (segment_.extent - progress(segment_, start_, y, nu_0_));
@@ -108,19 +106,8 @@ class ControlledWalk {
 
 [[noreturn]] void fail(std::size_t index, const ControlledState& at, double nu_0, const std::string& why) {
   throw NotConverged(fmt::format("segments[{}] at nu = {:.6g}, eps_dev = {:.6g}, P* = {:.6g}, s_dev = {:.6g}: {}",
-                                 index, nu_0 * std::exp(-at.strain.trace()), deviatoric_norm(at.strain), at.law.P,
+                                 index, at.nu(nu_0), deviatoric_norm(at.strain), at.law.P,
                                  at.law.sigma.norm() / at.law.P, why));
-}
-
-PredictedRow row_of(const ControlledState& y, int segment, double nu_0, const Deviator<double>& N) {
-  PredictedRow row;
-  row.segment = segment;
-  set_strain(row, {y.strain});
-  row.shear_path = y.shear_path;
-  row.nu = nu_0 * std::exp(-row.eps_vol);
-  row.state = y.law;
-  set_ratios(row, y.law.P, y.law.sigma, y.law.F, N);
-  return row;
 }
 
 /// N of the first direction with a deviator, before free rates.
@@ -147,14 +134,14 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
   Prediction prediction;
   prediction.model = rung;
   ControlledState y{start, Eigen::Matrix3d::Zero(), 0};
-  for (std::size_t k = 0; k < path.segments.size() && !prediction.unjammed; ++k) {
+  for (std::size_t k = 0; k < path.segments.size() && prediction.events.empty(); ++k) {
     const PathSegment& segment = path.segments[k];
-    const auto begin = [&] {
-      ControlledState from = y;
-      turn_corner(rung, from.law, law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin)));
-      return from;
+    const int index = static_cast<int>(k);
+    const auto add_row = [&](const ControlledState& at) {
+      prediction.rows.push_back(row_of({index, Strain{at.strain}, at.shear_path, at.nu(path.nu)}, at.law, N));
     };
-    const ControlledState from = begin();
+    ControlledState from = y;
+    turn_corner(rung, from.law, law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin)));
     // Once to see where it ends, once for the rows.
     ControlledWalk first(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
     const Arrival end = first.to(first.farthest());
@@ -163,31 +150,27 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
       fail(k, first.state(), path.nu,
            fmt::format("{} = {} is not reached within a strain of {}; give another extent or direction",
                        to_string(segment.extent_kind), segment.extent, kMostStrain));
-    prediction.unjammed = first.unjammed();
-    prediction.rows.push_back(row_of(from, static_cast<int>(k), path.nu, N));
+    add_row(from);
     ControlledWalk second(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
     for (int i = 1; i < per_segment; ++i) {
       if (control.stop.stop_requested()) throw Interrupted("the prediction was interrupted");
       const Arrival arrival = second.to(end.t * i / per_segment);
       if (arrival.kind != Arrival::Kind::reached) fail(k, from, path.nu, arrival.message);
-      prediction.rows.push_back(row_of(second.state(), static_cast<int>(k), path.nu, N));
+      add_row(second.state());
     }
     y = first.state();
     const SolverStatistics s = first.statistics(), t = second.statistics();
     prediction.statistics.steps += s.steps + t.steps;
     prediction.statistics.rhs_evaluations += s.rhs_evaluations + t.rhs_evaluations;
     prediction.statistics.restarts += 2;
-    if (prediction.unjammed) {
-      prediction.unjammed_at = {static_cast<int>(k), end.t};
+    if (first.unjammed()) {
       const bool tension = y.law.P > 2 * P_floor && least_principal_stress(y.law.P, y.law.sigma) <= 1e-9 * y.law.P;
-      prediction.events.push_back({tension ? EventKind::tension : EventKind::unjammed, prediction.unjammed_at,
-                                   path.nu * std::exp(-y.strain.trace())});
+      prediction.events.push_back({tension ? EventKind::tension : EventKind::unjammed, {index, end.t}, y.nu(path.nu)});
     } else {
-      prediction.rows.push_back(row_of(y, static_cast<int>(k), path.nu, N));
+      add_row(y);
     }
   }
-  prediction.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  prediction.warnings = warnings_of(prediction.rows, prediction.events, range);
+  conclude(prediction, range, before);
   return prediction;
 }
 

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "model/vocabulary/error.hpp"
-#include "predict/path_states.hpp"
 
 namespace grainlaw::predict {
 namespace {
@@ -32,6 +31,13 @@ constexpr int kMostEventsInPlace = 20;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Path parameter at which nu of `segment` falls to `nu_jamming`; infinite when its volume does not grow.
+double jamming_point(const StraightSegment& segment, double nu_jamming) {
+  const double dilation = segment.eps_vol_rate();
+  if (!(dilation > 0)) return kInfinity;
+  return std::log(segment.nu_start / nu_jamming) / dilation;
+}
+
 std::vector<double> magnitudes_of(const std::vector<ParameterStep>& steps) {
   std::vector<double> magnitudes;
   for (const ParameterStep& step : steps) magnitudes.push_back(step.magnitude);
@@ -43,13 +49,15 @@ std::span<double> flat(std::vector<Slope>& slopes) {
   return slopes.empty() ? std::span<double>() : std::span(slopes.front().data(), kUnknowns * slopes.size());
 }
 
-/// Of P, sigma', F', s_r in steady shear.
+void set_all(double& part, double value) { part = value; }
+void set_all(Deviator<double>& part, double value) { part.setConstant(value); }
+
+/// Of the state in steady shear at P.
 void write_typical(double P, double* y) {
-  y[0] = P;
-  deviator_at(y + 1).setConstant(0.1 * P);
-  deviator_at(y + 6).setConstant(0.1);
-  deviator_at(y + 11).setConstant(0.1);
-  deviator_at(y + 16).setConstant(0.1);
+  LawState<double> typical;
+  for_each_part([P](const StatePart& part, auto& of_y) { set_all(of_y, part.of_P ? part.typical * P : part.typical); },
+                typical);
+  pack(typical, y);
 }
 
 }  // namespace
@@ -98,9 +106,7 @@ double PathIntegration::event(double e, const double* y) const {
   return least;
 }
 
-void PathIntegration::note(EventKind kind) {
-  events_.push_back({kind, {static_cast<int>(index_), e_}, law_->segment().nu(e_)});
-}
+void PathIntegration::note(EventKind kind) { events_.push_back({kind, {index_, e_}, law_->segment().nu(e_)}); }
 
 /// The solver's next run begins at e_ with `state`.
 void PathIntegration::start_from(const LawState<double>& state) {
@@ -113,15 +119,14 @@ void PathIntegration::start_from(const LawState<double>& state) {
   started_ = false;
 }
 
-void PathIntegration::enter(const StraightSegment& segment, std::size_t index) {
+void PathIntegration::enter(const StraightSegment& segment, int index) {
   law_.emplace(parameters_, rung_, coupling_, segment, P_held_);
   sensitivity_.emplace(steps_, rung_, coupling_, segment, P_held_);
   index_ = index;
   e_ = 0;
   events_in_place_ = 0;
   jammed_until_ = rung_ == Rung::memory ? kInfinity : jamming_point(segment, parameters_.isotropic.pressure.nu_c);
-  if (!jammed_) return;
-  turn(false);
+  if (jammed_) turn(false);
 }
 
 /// Turns the state, and its slopes, where the path does at a corner; where spin does `on_the_way` the slopes end.
@@ -156,8 +161,7 @@ void PathIntegration::move_unjammed(double e) {
   e_ = e_J;
   jammed_ = true;
   note(EventKind::jammed);
-  LawState<double> state{2 * P_floor_, Deviator<double>::Zero(), Deviator<double>::Zero()};
-  start_from(state);
+  start_from({.P = 2 * P_floor_});
 }
 
 void PathIntegration::move_jammed(double e) {
@@ -214,10 +218,20 @@ void PathIntegration::take_event() {
     jammed_ = false;
     slopes_.clear();
     nu_J_ = law_->segment().nu(e_);
-    state_ = {0, Deviator<double>::Zero(), Deviator<double>::Zero()};
+    state_ = {};
     return;
   }
   turn(true);
+}
+
+PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                             const std::vector<StraightSegment>& segments, const PathStart& start,
+                             const std::vector<OutputPoint>& points, const Tolerances& tolerances,
+                             const RunControl& control) {
+  PathIntegration integration(parameters, rung, coupling, start, tolerances);
+  PathStates out = walk(integration, segments, points, control);
+  out.statistics = integration.statistics();
+  return out;
 }
 
 }  // namespace grainlaw::predict

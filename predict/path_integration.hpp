@@ -11,17 +11,15 @@
 #include <optional>
 #include <vector>
 
+#include "predict/path_walk.hpp"
 #include "predict/solvers/cvode.hpp"
-#include "predict/path_states.hpp"
-#include "predict/predict.hpp"
-#include "predict/segment_law.hpp"
-#include "predict/segment_sensitivity.hpp"
 
 namespace grainlaw::predict {
 
 /// P + lambda, lambda the least eigenvalue of sigma'; where |sigma'| is far below P a lower bound of it, which costs less [-].
 double least_principal_stress(double P, const Deviator<double>& sigma);
 
+/// Followed by walk().
 class PathIntegration {
  public:
   /// The parameters must outlive the object.
@@ -29,7 +27,7 @@ class PathIntegration {
                   const Tolerances& tolerances);
 
   /// Begins the next segment, `index` in the path; it must outlive the stay in it.
-  void enter(const StraightSegment& segment, std::size_t index);
+  void enter(const StraightSegment& segment, int index);
 
   /// Moves on to path parameter `e` of the segment, not before the last one, through whatever events lie between. Throws
   /// NotConverged where the solver fails.
@@ -37,7 +35,6 @@ class PathIntegration {
 
   const LawState<double>& state() const { return state_; }  ///< all zero while unjammed
   std::vector<LawState<double>> slopes() const;             ///< of the state, to each parameter of the start's steps
-  bool jammed() const { return jammed_; }
   const std::vector<PathEvent>& events() const { return events_; }
   SolverStatistics statistics() const { return solver_.statistics(); }
 
@@ -68,7 +65,7 @@ class PathIntegration {
   Unknowns at_start_{};      // of the solver's run
   double e_start_ = 0;
   bool started_ = false;
-  std::size_t index_ = 0;
+  int index_ = 0;
   double e_ = 0, jammed_until_ = 0;
 };
 

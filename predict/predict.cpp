@@ -8,16 +8,12 @@
 #include <limits>
 
 #include "model/vocabulary/error.hpp"
-#include "predict/path_states.hpp"
+#include "predict/path_walk.hpp"
 
 namespace grainlaw::predict {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-bool is_finite(const LawState<double>& state) {
-  return std::isfinite(state.P) && state.sigma.allFinite() && state.F.allFinite();
-}
 
 void check_tolerances(const Tolerances& tolerances) {
   if (!(tolerances.relative >= 1e-14 && tolerances.relative < 1)) {
@@ -56,25 +52,18 @@ void check_path(const std::vector<StraightSegment>& segments, const std::vector<
 }
 
 void check_start(const LawParameters<double>& parameters, double nu, const LawState<double>& start) {
-  if (!is_finite(start)) throw InvalidInput("the state at the start of the prediction is not finite");
+  for_each_part(
+      [](const StatePart& part, const auto& of_start) {
+        if (!numbers(of_start).allFinite())
+          throw InvalidInput(fmt::format("the state at the start of the prediction is not finite in {}", part.name));
+      },
+      start);
   if (!(start.P > 0)) throw InvalidInput(fmt::format("the start is not jammed: P* = {} is not positive", start.P));
   const double nu_c = parameters.isotropic.pressure.nu_c;
   if (!(nu > nu_c)) {
     throw InvalidInput(
         fmt::format("the start is not jammed: nu = {:.9g} is not above pressure.nu_c = {:.9g}", nu, nu_c));
   }
-}
-
-PredictedRow row_at(const StraightSegment& segment, const OutputPoint& point, double path_before,
-                    const LawState<double>& state, const Deviator<double>& N) {
-  PredictedRow row;
-  row.segment = point.segment;
-  set_strain(row, segment.strain(point.e));
-  row.shear_path = path_before + segment.eps_dev_rate() * point.e;
-  row.nu = segment.nu(point.e);
-  row.state = state;
-  set_ratios(row, state.P, state.sigma, state.F, N);
-  return row;
 }
 
 RowSlope slope_of(const LawState<double>& state, const LawState<double>& slope, const Deviator<double>& N) {
@@ -92,25 +81,7 @@ RowSlope slope_of(const LawState<double>& state, const LawState<double>& slope, 
   return row;
 }
 
-PathStart start_of(const LawParameters<double>& parameters, double nu, const LawState<double>& start,
-                   const Sensitivity& sensitivity) {
-  PathStart result{start, parameter_steps(parameters, sensitivity.parameters), {}};
-  for (const ParameterStep& step : result.steps) {
-    LawState<double> slope{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
-    if (sensitivity.start_from_law)
-      slope.P = (step.above.isotropic.P_star(nu) - step.below.isotropic.P_star(nu)) / (2 * step.h);
-    result.slopes.push_back(slope);
-  }
-  return result;
-}
-
-}  // namespace
-
-LawState<double> unknown_slope() {
-  const Deviator<double> none = Deviator<double>::Constant(kNaN);
-  return {kNaN, none, none, none};
-}
-
+/// One line for each way in which `rows` leave `range`, naming the farthest row, and for the first event of a kind.
 std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const std::vector<PathEvent>& events,
                                      const ValidRange& range) {
   constexpr double slack = 1e-9;  // rounding of a path that ends at the limit
@@ -143,8 +114,48 @@ std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, cons
   return warnings;
 }
 
+PathStart start_of(const LawParameters<double>& parameters, double nu, const LawState<double>& start,
+                   const Sensitivity& sensitivity) {
+  PathStart result{start, parameter_steps(parameters, sensitivity.parameters), {}};
+  for (const ParameterStep& step : result.steps) {
+    LawState<double> slope;
+    if (sensitivity.start_from_law)
+      slope.P = (step.above.isotropic.P_star(nu) - step.below.isotropic.P_star(nu)) / (2 * step.h);
+    result.slopes.push_back(slope);
+  }
+  return result;
+}
+
+}  // namespace
+
+LawState<double> unknown_slope() {
+  LawState<double> slope;
+  as_vector(slope).setConstant(kNaN);
+  return slope;
+}
+
+PredictedRow row_of(const PathPlace& place, const LawState<double>& state, const Deviator<double>& N) {
+  PredictedRow row;
+  row.segment = place.segment;
+  set_strain(row, place.strain);
+  row.shear_path = place.shear_path;
+  row.nu = place.nu;
+  row.state = state;
+  set_ratios(row, state.P, state.sigma, state.F, N);
+  return row;
+}
+
+void conclude(Prediction& prediction, const ValidRange& range, std::chrono::steady_clock::time_point begun) {
+  const auto first =
+      std::ranges::find_if(prediction.events, [](const PathEvent& event) { return event.kind != EventKind::jammed; });
+  prediction.unjammed = first != prediction.events.end();
+  if (prediction.unjammed) prediction.unjammed_at = first->at;
+  prediction.warnings = warnings_of(prediction.rows, prediction.events, range);
+  prediction.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {
-  LawState<double> state{parameters.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
+  const LawState<double> state{.P = parameters.isotropic.P_star(nu)};
   check_start(parameters, nu, state);
   return state;
 }
@@ -156,7 +167,7 @@ LawState<double> state_from_row(const Observation& row) {
   }
   const LawState<double> state{row.P_star, deviator<double>(row.stress.tensor) * (row.P_star / P),
                                deviator<double>(row.fabric.tensor)};
-  if (!is_finite(state)) throw InvalidInput("the measured start has a stress or fabric that is not finite");
+  if (!as_vector(state).allFinite()) throw InvalidInput("the measured start has a stress or fabric that is not finite");
   return state;
 }
 
@@ -177,32 +188,29 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
   Prediction prediction;
   prediction.model = model;
   prediction.events = path.events;
-  const auto first = std::find_if(path.events.begin(), path.events.end(),
-                                  [](const PathEvent& event) { return event.kind != EventKind::jammed; });
-  prediction.unjammed = first != path.events.end();
-  if (prediction.unjammed) prediction.unjammed_at = first->at;
   prediction.statistics = path.statistics;
-  prediction.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-
   const Deviator<double> N = shear_direction(segments);
   prediction.rows.reserve(path.states.size());
   std::size_t k = 0;
   double path_before = 0;  // shear path at the start of segment k
   for (std::size_t i = 0; i < path.states.size(); ++i) {
-    for (; k < static_cast<std::size_t>(points[i].segment); ++k)
-      path_before += segments[k].eps_dev_rate() * segments[k].length;
-    if (!is_finite(path.states[i]) || !(path.states[i].P >= 0)) {
+    const auto& [index, e] = points[i];
+    for (; k < static_cast<std::size_t>(index); ++k) path_before += segments[k].eps_dev_rate() * segments[k].length;
+    const StraightSegment& segment = segments[k];
+    const LawState<double>& state = path.states[i];
+    if (!as_vector(state).allFinite() || !(state.P >= 0)) {
       throw Error(
           fmt::format("segments[{}] at e = {:.9g}: the {} law gives a state that is not finite or P* < 0; "
                       "check the parameters",
-                      k, points[i].e, to_string(model)));
+                      k, e, to_string(model)));
     }
-    prediction.rows.push_back(row_at(segments[k], points[i], path_before, path.states[i], N));
+    const PathPlace place{index, segment.strain(e), path_before + segment.eps_dev_rate() * e, segment.nu(e)};
+    prediction.rows.push_back(row_of(place, state, N));
     if (path.slopes.empty()) continue;
     std::vector<RowSlope>& slopes = prediction.slopes.emplace_back();
-    for (const LawState<double>& slope : path.slopes[i]) slopes.push_back(slope_of(path.states[i], slope, N));
+    for (const LawState<double>& slope : path.slopes[i]) slopes.push_back(slope_of(state, slope, N));
   }
-  prediction.warnings = warnings_of(prediction.rows, prediction.events, range);
+  conclude(prediction, range, before);
   return prediction;
 }
 

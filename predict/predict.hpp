@@ -16,18 +16,9 @@
 #include "model/vocabulary/path.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "model/vocabulary/test_record.hpp"
+#include "predict/solvers/ode.hpp"
 
 namespace grainlaw::predict {
-
-enum class Model { reduced, evolution };
-enum class Method { adams, bdf };
-
-struct Tolerances {
-  double relative = 1e-8;         ///< of each unknown, in [1e-14, 1) [-]
-  double absolute = 1e-12;        ///< on P*, sigma'*, F', not negative [-]
-  Method method = Method::adams;  ///< how CVODE steps
-  long max_steps = 100000;        ///< internal steps per output interval
-};
 
 /// Where an output is wanted: a segment of the path and the path parameter in it, both not decreasing.
 struct OutputPoint {
@@ -117,22 +108,6 @@ constexpr auto fields_of(std::type_identity<PathEvent>) {
   return std::tuple{Field{&PathEvent::kind, "kind"}, Field{&PathEvent::at, ""}, Field{&PathEvent::nu, "nu"}};
 }
 static_assert(tells_every_member<PathEvent>());
-
-struct SolverStatistics {
-  long steps = 0, rhs_evaluations = 0, error_test_failures = 0, nonlinear_iterations = 0;  ///< of all segments
-  long restarts = 0;   ///< initialisations, one for each segment entered and each event in it
-  double seconds = 0;  ///< wall time of the integration [s]
-};
-constexpr auto fields_of(std::type_identity<SolverStatistics>) {
-  using S = SolverStatistics;
-  return std::tuple{Field{&S::steps, "steps"},
-                    Field{&S::rhs_evaluations, "rhs_evaluations"},
-                    Field{&S::error_test_failures, "error_test_failures"},
-                    Field{&S::nonlinear_iterations, "nonlinear_iterations"},
-                    Field{&S::restarts, "restarts"},
-                    Field{&S::seconds, "seconds", "s"}};
-}
-static_assert(tells_every_member<SolverStatistics>());
 
 /// Whose influence on the rows is wanted; nobody's by default, which costs nothing.
 struct Sensitivity {

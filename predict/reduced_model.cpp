@@ -2,18 +2,18 @@
 //   q(e) = s_max N - (s_max N - q_0) exp(-beta_s e),   F'(e) = F_max N - (F_max N - F'_0) exp(-beta_F e)
 // so that what does not lie along N decays. e is the deviatoric strain since the corner; parameters at the current nu.
 
+#include "model/reduced_law.hpp"
+
 #include <algorithm>
 
-#include "model/vocabulary/error.hpp"
-#include "model/reduced_law.hpp"
-#include "predict/path_states.hpp"
+#include "predict/path_walk.hpp"
 
 namespace grainlaw::predict {
 namespace {
 
 /// sigma'/P and F' at a corner.
 struct Ratios {
-  Deviator<double> q, F;
+  Deviator<double> q = Deviator<double>::Zero(), F = Deviator<double>::Zero();
 };
 
 Deviator<double> saturating_tensor(const Deviator<double>& limit, const Deviator<double>& start, double rate,
@@ -21,76 +21,90 @@ Deviator<double> saturating_tensor(const Deviator<double>& limit, const Deviator
   return limit - (limit - start) * std::exp(-rate * e);
 }
 
-Ratios ratios_at(const LawParameters<double>& p, const Ratios& corner, const LawDirection& direction, double nu,
-                 double e) {
-  const double eps_dev = direction.de * e;
-  const LawModuli<double> m = along(moduli_at(p, nu), p.lode, direction);
-  return {saturating_tensor(m.s_max * direction.N, corner.q, m.beta_s, eps_dev),
-          saturating_tensor(m.F_max * direction.N, corner.F, m.beta_F, eps_dev)};
-}
+/// The closed form as walk() follows it. From where the state unjams or jams on, it begins anew from nothing.
+class ReducedForm {
+ public:
+  /// The parameters must outlive the object.
+  ReducedForm(const LawParameters<double>& parameters, const LawState<double>& start)
+      : p_(parameters), nu_c_(parameters.isotropic.pressure.nu_c), corner_{start.sigma / start.P, start.F} {}
 
-PathStates states_of(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
-                     const LawState<double>& start, const std::vector<OutputPoint>& points, const RunControl& control) {
-  const double nu_c = parameters.isotropic.pressure.nu_c;
-  const Ratios none{Deviator<double>::Zero(), Deviator<double>::Zero()};
-  PathStates out;
-  out.states.reserve(points.size());
-  Ratios corner{start.sigma / start.P, start.F};
-  bool jammed = true;
-  std::size_t next = 0;
-  for (std::size_t k = 0; k < segments.size() && next < points.size(); ++k) {
-    const StraightSegment& segment = segments[k];
-    const LawDirection direction = law_direction(segment.direction);
+  void enter(const StraightSegment& segment, int index) {
+    if (segment_) leave();
+    segment_ = &segment;
+    index_ = index;
+    direction_ = law_direction(segment.direction);
+    from_ = 0;
     // nu passes nu_c once in a segment, down where it was jammed and up where it was not
-    const double crossing = std::max(std::log(nu_c / segment.nu_start) / direction.dx, 0.0);
-    const bool crosses = (jammed ? direction.dx < 0 : direction.dx > 0) && crossing <= segment.length;
-    const auto state_at = [&](double e) -> LawState<double> {
-      const bool after = crosses && e >= crossing;
-      if (jammed == after) return {0, none.q, none.F};
-      const double from = after ? crossing : 0;
-      const double nu = segment.nu(e), P = parameters.isotropic.P_star(nu);
-      const Ratios now = ratios_at(parameters, after ? none : corner, direction, nu, e - from);
-      return {P, now.q * P, now.F};
-    };
-    for (; next < points.size() && points[next].segment == static_cast<int>(k); ++next) {
-      if (control.stop.stop_requested()) throw Interrupted("the prediction was interrupted");
-      out.states.push_back(state_at(points[next].e));
-    }
-    const bool reached = next < points.size() || (!points.empty() && points.back().e >= crossing);
-    if (crosses && reached)
-      out.events.push_back({jammed ? EventKind::unjammed : EventKind::jammed, {static_cast<int>(k), crossing}, nu_c});
-    if (jammed != crosses) {
-      const double from = crosses ? crossing : 0;
-      corner =
-          ratios_at(parameters, crosses ? none : corner, direction, segment.nu(segment.length), segment.length - from);
-    }
-    jammed = jammed != crosses;
+    crossing_ = std::max(std::log(nu_c_ / segment.nu_start) / direction_.dx, 0.0);
+    crosses_ = (jammed_ ? direction_.dx < 0 : direction_.dx > 0) && crossing_ <= segment.length;
   }
-  return out;
-}
 
-/// a + c b
-LawState<double> moved(const LawState<double>& a, double c, const LawState<double>& b) {
-  return {a.P + c * b.P, a.sigma + c * b.sigma, a.F + c * b.F};
-}
+  void advance(double e) {
+    e_ = e;
+    if (crosses_ && e >= crossing_) cross();
+  }
+
+  LawState<double> state() const {
+    if (!jammed_) return {};
+    const double nu = segment_->nu(e_), P = p_.isotropic.P_star(nu);
+    const Ratios now = ratios_at(e_, nu);
+    return {P, now.q * P, now.F};
+  }
+
+  static std::vector<LawState<double>> slopes() { return {}; }
+  const std::vector<PathEvent>& events() const { return events_; }
+
+ private:
+  void cross() {
+    events_.push_back({jammed_ ? EventKind::unjammed : EventKind::jammed, {index_, crossing_}, nu_c_});
+    jammed_ = !jammed_;
+    crosses_ = false;
+    corner_ = {};
+    from_ = crossing_;
+  }
+
+  void leave() {
+    if (jammed_) corner_ = ratios_at(segment_->length, segment_->nu(segment_->length));
+  }
+
+  Ratios ratios_at(double e, double nu) const {
+    const double eps_dev = direction_.de * (e - from_);
+    const LawModuli<double> m = along(moduli_at(p_, nu), p_.lode, direction_);
+    return {saturating_tensor(m.s_max * direction_.N, corner_.q, m.beta_s, eps_dev),
+            saturating_tensor(m.F_max * direction_.N, corner_.F, m.beta_F, eps_dev)};
+  }
+
+  const LawParameters<double>& p_;
+  double nu_c_;
+  Ratios corner_;  // at from_ of the segment
+  bool jammed_ = true;
+  const StraightSegment* segment_ = nullptr;
+  int index_ = 0;
+  LawDirection direction_;
+  double from_ = 0, e_ = 0;
+  double crossing_ = 0;   // where nu passes nu_c,
+  bool crosses_ = false;  // if it does so ahead
+  std::vector<PathEvent> events_;
+};
 
 }  // namespace
 
 PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
                           const PathStart& start, const std::vector<OutputPoint>& points, const RunControl& control) {
-  PathStates out = states_of(parameters, segments, start.state, points, control);
+  const auto states_of = [&](const LawParameters<double>& p, const LawState<double>& from) {
+    ReducedForm form(p, from);
+    return walk(form, segments, points, control);
+  };
+  PathStates out = states_of(parameters, start.state);
   if (start.steps.empty()) return out;
   const auto unjammed = std::ranges::find_if(out.states, [](const LawState<double>& state) { return !(state.P > 0); });
   out.slopes.assign(points.size(), std::vector(start.steps.size(), unknown_slope()));
   for (std::size_t k = 0; k < start.steps.size(); ++k) {
     const auto& [magnitude, h, above, below] = start.steps[k];
-    const auto up = states_of(above, segments, moved(start.state, h, start.slopes[k]), points, control).states;
-    const auto down = states_of(below, segments, moved(start.state, -h, start.slopes[k]), points, control).states;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(unjammed - out.states.begin()); ++i) {
-      const LawState<double> difference = moved(up[i], -1, down[i]),
-                             none{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
-      out.slopes[i][k] = moved(none, 1 / (2 * h), difference);
-    }
+    const auto up = states_of(above, moved(start.state, h, start.slopes[k])).states;
+    const auto down = states_of(below, moved(start.state, -h, start.slopes[k])).states;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(unjammed - out.states.begin()); ++i)
+      out.slopes[i][k] = moved({}, 1 / (2 * h), moved(up[i], -1, down[i]));
   }
   return out;
 }

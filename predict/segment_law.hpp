@@ -1,14 +1,15 @@
 #pragma once
 // Eq. (16), with or without memory, on a straight segment in the unknowns that are integrated. Its volumetric terms are
 // total differentials, B dx = dP(nu) with P(nu) of Eq. (14), and need no integration where F' stays:
-//   y = (Pi, tau (5), F' (5), s_r (5), E (5)),   P = P(nu) + Pi,   sigma' = tau + g F'
+//   y = (Pi, tau, and the rest of the state),   P = P(nu) + Pi,   sigma' = tau + g F'
 //   g = a2 P(nu) (Coupling::energy, memory) or (a0/3) ln(nu/nu_start) (Coupling::single), so that dg = (A2/F') dx
-//   dPi = A1 S de,   dtau = DG (N - sigma'/(P s_max)) de - g dF',   dF', ds_r, dE as they are
+//   dPi = A1 S de,   dtau = DG (N - sigma'/(P s_max)) de - g dF',   the rest as it is
 // Memory's B is that at its own jamming density, and what it differs by from P(nu)'s stays in dPi and dtau.
 // Without it an error made where P is large is carried down to where it is small: from nu = 0.82 to 0.67 it grows 54 times.
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 
 #include "model/law.hpp"
@@ -16,26 +17,42 @@
 
 namespace grainlaw::predict {
 
-inline constexpr std::size_t kUnknowns = 21;
+inline constexpr std::size_t kUnknowns = kStateSize;
 using Unknowns = std::array<double, kUnknowns>;
 
-/// The five numbers of a deviator among the unknowns.
-inline Eigen::Map<Deviator<double>> deviator_at(double* y) { return Eigen::Map<Deviator<double>>(y); }
-inline Eigen::Map<const Deviator<double>> deviator_at(const double* y) { return Eigen::Map<const Deviator<double>>(y); }
+/// The numbers of a part of a state.
+inline auto numbers(double& part) { return Eigen::Map<Eigen::Matrix<double, 1, 1>>(&part); }
+inline auto numbers(const double& part) { return Eigen::Map<const Eigen::Matrix<double, 1, 1>>(&part); }
+inline Deviator<double>& numbers(Deviator<double>& part) { return part; }
+inline const Deviator<double>& numbers(const Deviator<double>& part) { return part; }
 
-/// P, sigma', F', s_r, E in the order of the unknowns.
+/// Writes `of` the numbers of each part, by default as they stand. Part by part: reading in other portions than were written makes a processor wait.
+template <class Of = std::identity>
+void pack(const LawState<double>& state, double* y, const Of& of = {}) {
+  for_each_part(
+      [&](const StatePart&, const auto& part) {
+        const auto& from = numbers(part);
+        Eigen::Map<typename std::decay_t<decltype(from)>::PlainObject> to(y);
+        to = of(from);
+        y += from.size();
+      },
+      state);
+}
 inline Unknowns packed(const LawState<double>& state) {
   Unknowns y;
-  y[0] = state.P;
-  deviator_at(y.data() + 1) = state.sigma;
-  deviator_at(y.data() + 6) = state.F;
-  deviator_at(y.data() + 11) = state.s_r;
-  deviator_at(y.data() + 16) = state.E;
+  pack(state, y.data());
   return y;
 }
-
 inline LawState<double> unpacked(const double* y) {
-  return {y[0], deviator_at(y + 1), deviator_at(y + 6), deviator_at(y + 11), deviator_at(y + 16)};
+  LawState<double> state;
+  for_each_part(
+      [&y](const StatePart&, auto& part) {
+        auto&& to = numbers(part);
+        to = Eigen::Map<const typename std::decay_t<decltype(to)>::PlainObject>(y);
+        y += to.size();
+      },
+      state);
+  return state;
 }
 
 /// The law on one segment, continued harmlessly past the end of the jammed range, where trial steps of a solver look.
@@ -54,12 +71,11 @@ class SegmentLaw {
   const StraightSegment& segment() const { return *segment_; }
   const LawDirection& direction() const { return direction_; }
 
-  Unknowns unknowns_of(double e, const LawState<double>& state) const {
+  Unknowns unknowns_of(double e, LawState<double> state) const {
     const Place& here = at(e);
-    Unknowns y = packed(state);
-    y[0] -= here.P_ref;
-    deviator_at(y.data() + 1) -= here.g * state.F;
-    return y;
+    state.P -= here.P_ref;
+    state.sigma -= here.g * state.F;
+    return packed(state);
   }
 
   LawState<double> state_of(double e, const double* y) const {
@@ -77,27 +93,22 @@ class SegmentLaw {
     return law_rate(at(e).moduli, *p_, rung_, coupling_, held, direction_);
   }
 
-  /// dy/de, into `rate`.
-  void rate(double e, const double* y, double* rate) const {
-    const LawState<double> state = state_of(e, y), of_state = state_rate(e, state);
+  /// dy/de, into `out`.
+  void rate(double e, const double* y, double* out) const {
+    const LawState<double> state = state_of(e, y);
+    const LawState<double> rate = state_rate(e, state);
     const Place& here = at(e);
     const LawModuli<double>& m = here.moduli;
     const double dg = single() ? p_->anisotropy.a0 / 3.0 : a2() * m.B;
-    rate[0] = of_state.P - m.B * direction_.dx;
-    deviator_at(rate + 1) = of_state.sigma - state.F * (dg * direction_.dx) - here.g * of_state.F;
-    deviator_at(rate + 6) = of_state.F;
-    deviator_at(rate + 11) = of_state.s_r;
-    deviator_at(rate + 16) = of_state.E;
+    pack(rate, out);
+    out[0] -= m.B * direction_.dx;
+    Eigen::Map<Deviator<double>> dtau(out + 1);
+    dtau = rate.sigma - state.F * (dg * direction_.dx) - here.g * rate.F;
   }
 
   /// What a relative tolerance refers to: P, sigma', F', not the differences that stand for them.
-  void scale(double e, const double* y, double* scale) const {
-    const LawState<double> state = state_of(e, y);
-    scale[0] = std::abs(state.P);
-    deviator_at(scale + 1) = state.sigma.cwiseAbs();
-    deviator_at(scale + 6) = state.F.cwiseAbs();
-    deviator_at(scale + 11) = state.s_r.cwiseAbs();
-    deviator_at(scale + 16) = state.E.cwiseAbs();
+  void scale(double e, const double* y, double* out) const {
+    pack(state_of(e, y), out, [](const auto& part) { return part.cwiseAbs(); });
   }
 
  private:

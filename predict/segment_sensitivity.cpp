@@ -1,5 +1,9 @@
 #include "predict/segment_sensitivity.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace grainlaw::predict {
 namespace {
 
@@ -17,6 +21,21 @@ Slope quotient(const Unknowns& above, const Unknowns& below, double h) {
 }
 
 }  // namespace
+
+std::vector<ParameterStep> parameter_steps(const LawParameters<double>& parameters,
+                                           const std::vector<std::size_t>& indices) {
+  std::vector<ParameterStep> steps;
+  for (const std::size_t i : indices) {
+    ParameterStep step{0, 0, parameters, parameters};
+    const double value = *fields(parameters)[i], start = std::abs(parameter_table()[i].start);
+    step.magnitude = std::max(std::abs(value), start > 0 ? start : 1.0);
+    step.h = std::cbrt(std::numeric_limits<double>::epsilon()) * step.magnitude;
+    *fields(step.above)[i] = value + step.h;
+    *fields(step.below)[i] = value - step.h;
+    steps.push_back(step);
+  }
+  return steps;
+}
 
 SegmentSensitivity::SegmentSensitivity(const std::vector<ParameterStep>& steps, Rung rung, Coupling coupling,
                                        const StraightSegment& segment, double P_held) {
@@ -49,10 +68,10 @@ Slope SegmentSensitivity::of_state(std::size_t k, double e, const Unknowns& y, c
                   packed(pair.below.state_of(e, moved(y.data(), -pair.h, slope.data()).data())), pair.h);
 }
 
-Slope turned_slope(const LawState<double>& state, Slope slope) {
-  const LawState<double> d = unpacked(slope.data());
-  deviator_at(slope.data() + 11) = (d.sigma - state.sigma * (d.P / state.P)) / state.P;
-  return slope;
+Slope turned_slope(const LawState<double>& state, const Slope& slope) {
+  LawState<double> d = unpacked(slope.data());
+  d.s_r = (d.sigma - state.sigma * (d.P / state.P)) / state.P;
+  return packed(d);
 }
 
 }  // namespace grainlaw::predict

@@ -1,18 +1,30 @@
 #pragma once
 // What the parameters change of a state along a straight segment: S_k = dy/dp_k for each parameter p_k, with
 //   dS_k/de = (df/dy) S_k + df/dp_k = [f(y + h S_k; p_k + h) - f(y - h S_k; p_k - h)]/(2h)
-// f the rate of segment_law.hpp, h by parameter_step.hpp. (CVODES' own differences step by the square root of its tolerance,
+// f the rate of segment_law.hpp, h = eps^(1/3) of the parameter's magnitude, where truncation, h^2 f'''/6, and rounding,
+// eps f/h, are of one size. (CVODES' own differences step by the square root of its tolerance,
 // at the default one ten times as far: far for a nu_c near jamming.) Its unknowns are a function of state and parameters, so
 // slopes of the state and slopes of the unknowns are turned into one another by the same differences. A reversal at a corner,
 // s_r := s = sigma'/P, has ds_r := ds = (dsigma' - s dP)/P. Events whose place moves with the parameters are not followed:
 // see RowSlope.
 
+#include <cstddef>
 #include <vector>
 
-#include "predict/parameter_step.hpp"
 #include "predict/segment_law.hpp"
 
 namespace grainlaw::predict {
+
+/// The law with one parameter a little larger and a little smaller: df/dp = (f(p + h) - f(p - h))/(2h).
+struct ParameterStep {
+  double magnitude = 0;                ///< of the parameter: its value, or where a fit would start if that is larger
+  double h = 0;                        ///< step [-]
+  LawParameters<double> above, below;  ///< with p + h and p - h
+};
+
+/// One for each index in parameter_table().
+std::vector<ParameterStep> parameter_steps(const LawParameters<double>& parameters,
+                                           const std::vector<std::size_t>& indices);
 
 /// A slope d/dp of a state, packed(), or of the unknowns.
 using Slope = Unknowns;
@@ -41,6 +53,6 @@ class SegmentSensitivity {
 };
 
 /// Slope after a reversal of `state` at a corner of the path.
-Slope turned_slope(const LawState<double>& state, Slope slope);
+Slope turned_slope(const LawState<double>& state, const Slope& slope);
 
 }  // namespace grainlaw::predict

@@ -10,6 +10,7 @@
 #include "model/parameters_file.hpp"
 #include "model/files/output_folder.hpp"
 #include "model/vocabulary/error.hpp"
+#include "predict/studies/walker.hpp"
 #include "predict/predict.hpp"
 #include "predict/studies/batch.hpp"
 #include "predict/studies/work_precision.hpp"

@@ -1,7 +1,7 @@
 #include "app/commands/study_output.hpp"
 
+#include "app/report/svg_figure.hpp"
 #include "model/files/provenance.hpp"
-#include "app/report/svg_file.hpp"
 
 namespace grainlaw::app {
 

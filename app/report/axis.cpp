@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace grainlaw::app::report {
 namespace {
 
 constexpr double kLargest = 1e300;  // so that the range's extent is finite
 
-/// The step 1, 2 or 5 times a power of ten that divides `extent` into about `wanted` parts.
+/// The step 1, 2 or 5 times a power of ten that divides `extent` into about
+/// `wanted` parts.
 double round_step(double extent, int wanted) {
   const double raw = extent / std::max(1, wanted);
   const double decade = std::pow(10.0, std::floor(std::log10(raw)));
@@ -25,6 +27,43 @@ std::string tick_number(double value, double step) {
   std::string text = fmt::format("{:.{}f}", value, decimals);
   if (text.front() == '-') text.replace(0, 1, "\u2212");
   return text;
+}
+
+/// Smallest and largest defined value along one axis of panels.
+struct Extent {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
+
+  void add(double value, const AxisStyle& style) {
+    if (!std::isfinite(value) || (style.logarithmic && value <= 0)) return;
+    if (style.floor && value < *style.floor) return;
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+};
+
+Extent extent_of(const std::vector<const Panel*>& panels, bool horizontal, const AxisStyle& style) {
+  Extent extent;
+  for (const Panel* panel : panels) {
+    for (const Series& series : panel->series) {
+      const auto& values = horizontal ? series.x : series.y;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        // What is not drawn must not stretch the axis.
+        if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
+        extent.add(values[i], style);
+        if (horizontal) continue;
+        const auto add_both = [&](double half_width) {
+          extent.add(values[i] - half_width, style);
+          extent.add(values[i] + half_width, style);
+        };
+        if (i < series.y_error.size()) add_both(series.y_error[i]);
+        for (const std::vector<double>& band : series.bands) add_both(band[i]);
+      }
+    }
+  }
+  if (style.include) extent.add(*style.include, style);
+  if (!(extent.lowest <= extent.highest)) return style.logarithmic ? Extent{0.1, 1} : Extent{0, 1};
+  return extent;
 }
 
 }  // namespace
@@ -76,6 +115,19 @@ Axis logarithmic_axis(double lowest, double highest, int wanted) {
     axis.ticks.push_back({std::pow(10.0, decade), label});
     if (stride > 1 || decade == last) continue;
     for (int k = 2; k <= 9; ++k) axis.ticks.push_back({k * std::pow(10.0, decade), {}});
+  }
+  return axis;
+}
+
+Axis shared_axis(const std::vector<const Panel*>& panels, bool horizontal, int wanted) {
+  const AxisStyle& style = horizontal ? panels.front()->x : panels.front()->y;
+  const Extent extent = extent_of(panels, horizontal, style);
+  const double lowest = style.from.value_or(extent.lowest), highest = style.to.value_or(extent.highest);
+  if (style.logarithmic) return logarithmic_axis(lowest, highest, wanted);
+  if (style.from && style.to) return linear_axis(lowest, highest, wanted, true);
+  Axis axis = linear_axis(lowest, highest, wanted);
+  if (style.from || style.to) {
+    axis = linear_axis(style.from.value_or(axis.from), style.to.value_or(axis.to), wanted, true);
   }
   return axis;
 }

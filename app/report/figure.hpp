@@ -47,12 +47,12 @@ struct Panel {
 };
 
 struct Figure {
-  std::string id;                    ///< letters, digits and '-'; unique in the page
-  std::string title;                 ///< for the caption and for screen readers, one line
-  std::string description;           ///< what a reader sees, for screen readers
-  Text caption;                      ///< below the figure
-  std::vector<std::string> sources;  ///< files that it was drawn from, relative to the report's directory
-  std::vector<Panel> panels;
+  std::string id;                         ///< letters, digits and '-'; unique in the page
+  std::string title;                      ///< for the caption and for screen readers, one line
+  std::string description;                ///< what a reader sees, for screen readers
+  Text caption = {};                      ///< below the figure
+  std::vector<std::string> sources = {};  ///< files that it was drawn from, relative to the report's directory
+  std::vector<Panel> panels = {};
   int columns = 1;
   double panel_height = 250;  ///< [px] of a figure 960 px wide
   bool shared_axes = false;   ///< same ranges in all panels, numbers on the outer ones only

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "app/report/series.hpp"
+
 namespace grainlaw::app::report {
 namespace {
 
@@ -13,25 +15,23 @@ constexpr std::array kColours{Colour::blue, Colour::green, Colour::purple, Colou
 /// `number`: of the setting. Neighbours differ in symbol and colour; the sixth to tenth are outlines, and each five have their
 /// symbols in the colours of their neighbours before.
 Series point_of(const chain::SettingResult& r, std::size_t number) {
-  Series series;
-  series.label = plain(r.outcome.name);
+  const bool good = r.dominated_by.empty() && !chain::near_the_stop(r.outcome.energy_residual);
+  Series series = symbols(plain(r.outcome.name),
+                          good ? kColours[(number + number / kMarkers.size()) % kColours.size()] : Colour::grey,
+                          kMarkers[number % kMarkers.size()], 4);
+  series.open_marker = number / kMarkers.size() % 2 == 1;
   series.x = {r.outcome.cost.particle_steps};
   series.y = {r.reached};
   series.y_error = {r.reached_error};
-  series.marker = kMarkers[number % kMarkers.size()];
-  series.open_marker = number / kMarkers.size() % 2 == 1;
-  series.marker_size = 4;
-  series.colour = r.dominated_by.empty() && !chain::near_the_stop(r.outcome.energy_residual)
-                      ? kColours[(number + number / kMarkers.size()) % kColours.size()]
-                      : Colour::grey;
   return series;
 }
 
 /// The edge of what sampling makes, and the shade below it down to `bottom`.
-std::array<Series, 2> floor_of(const std::vector<const chain::SettingResult*>& by_cost, chain::Packings packings, double bottom) {
+std::array<Series, 2> floor_of(const std::vector<const chain::SettingResult*>& by_cost, chain::Packings packings,
+                               double bottom) {
   Series edge, shade;
   edge.label = plain(packings == chain::Packings::given ? "floor: chance of the packings that all settings share"
-                                                 : "floor: sampling, by the setting's own packings");
+                                                        : "floor: sampling, by the setting's own packings");
   edge.line = Line::dotted;
   shade.bands.emplace_back();
   for (const chain::SettingResult* r : by_cost) {
@@ -60,25 +60,15 @@ double bottom_of(const std::vector<const chain::SettingResult*>& results) {
 }  // namespace
 
 Figure figure_of(const chain::SettingsStudy& study) {
-  Figure figure;
-  figure.id = "settings";
-  figure.title = "Error of settings against their cost";
-  figure.description =
-      "Error reached over particle-steps. " + study.error +
-      ". Bars: one standard error by the packings. Shaded: what sampling alone makes; star: the "
-      "default; grey: dominated by a setting that costs no more and is better beyond chance, or so near the "
-      "energy balance's stop that other "
-      "data sets would not be finished";
-  figure.panel_height = 380;
   std::vector<const chain::SettingResult*> by_cost;
   for (std::size_t i = study.judged; i < study.results.size(); ++i) by_cost.push_back(&study.results[i]);
   std::stable_sort(by_cost.begin(), by_cost.end(), [](const auto* a, const auto* b) {
     return a->outcome.cost.particle_steps < b->outcome.cost.particle_steps;
   });
-  Panel panel;
-  panel.x.label = plain("particle-steps");
-  panel.y.label = plain(study.packings == chain::Packings::given ? "error reached, in units of the packings' chance [–]"
-                                                          : "relative error reached [–]");
+  Panel panel =
+      panel_of("", "particle-steps",
+               study.packings == chain::Packings::given ? "error reached, in units of the packings' chance [–]"
+                                                        : "relative error reached [–]");
   panel.x.logarithmic = panel.y.logarithmic = true;
   const double bottom = bottom_of(by_cost);
   panel.y.from = bottom;
@@ -93,8 +83,14 @@ Figure figure_of(const chain::SettingsStudy& study) {
   star.marker_size = 7;
   if (star.colour != Colour::grey) star.colour = Colour::vermillion;
   panel.series.push_back(star);
-  figure.panels.push_back(panel);
-  return figure;
+  return {.id = "settings",
+          .title = "Error of settings against their cost",
+          .description = "Error reached over particle-steps. " + study.error +
+                         ". Bars: one standard error by the packings. Shaded: what sampling alone makes; star: the "
+                         "default; grey: dominated by a setting that costs no more and is better beyond chance, or so "
+                         "near the energy balance's stop that other data sets would not be finished",
+          .panels = {panel},
+          .panel_height = 380};
 }
 
 }  // namespace grainlaw::app::report

@@ -2,20 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
-#include "app/report/dem_series.hpp"
 #include "app/report/figures.hpp"
+#include "app/report/series.hpp"
 
 namespace grainlaw::app::report {
 namespace {
 
-using predict::PredictedRow;
+using predict::Initial, predict::PredictedCurve, predict::PredictedRow, predict::PredictionFolder;
 
 struct Predicted {
   const char* label;
   const char* difference;
-  Quantity measured;
+  double Observation::*measured;
   double (*of)(const PredictedRow&);
   double predict::RowBand::*band;
 };
@@ -34,173 +33,140 @@ bool strain_grows(const std::vector<Row>& rows) {
   return std::is_sorted(rows.begin(), rows.end(), less);
 }
 
-/// What the figure is drawn over: deviatoric strain, or the length travelled when the path turns.
-struct Abscissa {
+/// What a prediction's figure shows over what: deviatoric strain, or the length travelled when the path turns.
+struct Shown {
+  const PredictionFolder& prediction;
+  std::vector<TestRecord> dem;
   bool by_strain = true;
 
-  double of(const Observation& row) const { return by_strain ? row.eps_dev : row.shear_path; }
-  double of(const PredictedRow& row) const { return by_strain ? row.eps_dev : row.shear_path; }
+  double x(const Observation& row) const { return by_strain ? row.eps_dev : row.shear_path; }
+  double x(const PredictedRow& row) const { return by_strain ? row.eps_dev : row.shear_path; }
+
+  Panel panel(const char* label) const {
+    Panel panel = panel_of("", by_strain ? kStrainLabel : "strain path length ∫|d{ε}_{dev}| [–]", label);
+    panel.x.include = panel.y.include = 0;
+    return panel;
+  }
 };
 
-Abscissa abscissa_of(const predict::PredictionFolder& prediction, const std::vector<TestRecord>& dem) {
-  const bool grows =
-      std::all_of(dem.begin(), dem.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
+Shown shown_of(const PredictionFolder& prediction) {
+  Shown shown{prediction, dem_records(prediction)};
+  shown.by_strain =
+      std::all_of(shown.dem.begin(), shown.dem.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
       std::all_of(prediction.curves.begin(), prediction.curves.end(),
-                  [](const predict::PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
-  return {grows};
-}
-
-/// Started from the law, a curve is the same for every seed and shown once; from measured values there is one for each.
-std::vector<const predict::PredictedCurve*> shown_curves(const predict::PredictionFolder& prediction) {
-  std::vector<const predict::PredictedCurve*> shown;
-  for (const predict::PredictedCurve& drawn : prediction.curves) {
-    const bool again = std::any_of(shown.begin(), shown.end(), [&](const predict::PredictedCurve* other) {
-      return drawn.initial == predict::Initial::law && other->initial == predict::Initial::law && other->model == drawn.model;
-    });
-    if (!again) shown.push_back(&drawn);
-  }
+                  [](const PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
   return shown;
 }
 
-Series law_series(const predict::PredictedCurve& drawn) {
-  const bool measured = drawn.initial == predict::Initial::measured;
-  Series series;
-  series.label = plain(to_string(drawn.model) + (measured ? ", from measured start" : ", from the law's start"));
-  series.colour = drawn.model == Rung::reduced     ? Colour::green
-                  : drawn.model == Rung::evolution ? Colour::vermillion
-                                                   : Colour::blue;
-  series.line = measured ? Line::dotted : Line::solid;
-  return series;
-}
-
-Series predicted_line(const predict::PredictedCurve& drawn, const Predicted& quantity, const Abscissa& abscissa) {
-  Series series = law_series(drawn);
-  for (const PredictedRow& row : drawn.prediction.rows) {
-    series.x.push_back(abscissa.of(row));
-    series.y.push_back(quantity.of(row));
+/// Started from the law, a curve is the same for every seed and shown once; from measured values there is one for each.
+std::vector<const PredictedCurve*> distinct_curves(const PredictionFolder& prediction) {
+  std::vector<const PredictedCurve*> distinct;
+  for (const PredictedCurve& drawn : prediction.curves) {
+    const bool again = std::any_of(distinct.begin(), distinct.end(), [&](const PredictedCurve* other) {
+      return drawn.initial == Initial::law && other->initial == Initial::law && other->model == drawn.model;
+    });
+    if (!again) distinct.push_back(&drawn);
   }
-  return series;
+  return distinct;
 }
 
 /// The curve whose bands are drawn: of the rung that the path needs, else of the richest, from the law's own start.
-const predict::PredictedCurve* banded_curve(const predict::PredictionFolder& prediction,
-                                   const std::vector<const predict::PredictedCurve*>& shown) {
-  const predict::PredictedCurve* richest = nullptr;
-  for (const predict::PredictedCurve* drawn : shown) {
-    if (drawn->initial != predict::Initial::law) continue;
+const PredictedCurve* banded_curve(const PredictionFolder& prediction,
+                                   const std::vector<const PredictedCurve*>& curves) {
+  const PredictedCurve* richest = nullptr;
+  for (const PredictedCurve* drawn : curves) {
+    if (drawn->initial != Initial::law) continue;
     if (richest == nullptr || richest->model != prediction.needed.rung) richest = drawn;
   }
   return richest;
 }
 
-void add_bands(const predict::PredictedCurve& drawn, const Predicted& quantity, Series& series) {
-  series.bands.resize(2);
-  for (const PredictedRow& row : drawn.prediction.rows) {
-    series.bands[0].push_back(row.mean.*quantity.band);
-    series.bands[1].push_back(row.single.*quantity.band);
-  }
+Series law_line(const PredictedCurve& drawn, double width = 1.8) {
+  const bool measured = drawn.initial == Initial::measured;
+  const Colour colour = drawn.model == Rung::reduced     ? Colour::green
+                        : drawn.model == Rung::evolution ? Colour::vermillion
+                                                         : Colour::blue;
+  return line_of(plain(to_string(drawn.model) + (measured ? ", from measured start" : ", from the law's start")),
+                 colour, measured ? Line::dotted : Line::solid, width);
 }
 
-/// Row by row: the curve was computed at the rows of `test`.
-Series difference_line(const predict::PredictedCurve& drawn, const TestRecord& test, const Predicted& quantity,
-                       const Abscissa& abscissa) {
-  Series series = law_series(drawn);
-  series.line_width = 1;
-  const std::size_t rows = std::min(drawn.prediction.rows.size(), test.rows.size());
-  for (std::size_t i = 0; i < rows; ++i) {
-    series.x.push_back(abscissa.of(test.rows[i]));
-    series.y.push_back(quantity.of(drawn.prediction.rows[i]) - test.rows[i].*quantity.measured);
-  }
-  return series;
-}
-
-AxisStyle strain_axis(const Abscissa& abscissa) {
-  AxisStyle style;
-  style.label =
-      notation(abscissa.by_strain ? "deviatoric strain {ε}_{dev} [–]" : "strain path length ∫|d{ε}_{dev}| [–]");
-  style.include = 0;
-  return style;
-}
-
-Panel value_panel(const predict::PredictionFolder& prediction, const std::vector<TestRecord>& dem, const Predicted& quantity,
-                  const Abscissa& abscissa) {
-  Panel panel;
-  panel.x = strain_axis(abscissa);
-  panel.y.label = notation(quantity.label);
-  panel.y.include = 0;
-  const auto seeds = seeds_of(dem);
-  for (const TestRecord& test : dem) {
+Panel value_panel(const Shown& shown, const Predicted& quantity) {
+  Panel panel = shown.panel(quantity.label);
+  const auto x = [&](const auto& row) { return shown.x(row); };
+  const auto seeds = seeds_of(shown.dem);
+  for (const TestRecord& test : shown.dem) {
     const std::size_t seed = index_of(seeds, test.packing.seed);
-    panel.series.push_back(dem_symbols(test, abscissa.by_strain ? &Observation::eps_dev : &Observation::shear_path,
-                                       quantity.measured, 60, plain("DEM seed " + std::to_string(test.packing.seed)),
-                                       seed % 2 == 0 ? Colour::blue : Colour::sky, marker_of(seed)));
+    panel.series.push_back(through(open_symbols(plain("DEM seed " + std::to_string(test.packing.seed)),
+                                                seed % 2 == 0 ? Colour::blue : Colour::sky, marker_of(seed), 2),
+                                   symbol_rows(test, 60), x, quantity.measured));
   }
-  const std::vector<const predict::PredictedCurve*> shown = shown_curves(prediction);
-  const predict::PredictedCurve* const banded = banded_curve(prediction, shown);
-  for (const predict::PredictedCurve* drawn : shown) {
-    panel.series.push_back(predicted_line(*drawn, quantity, abscissa));
-    if (drawn == banded) add_bands(*drawn, quantity, panel.series.back());
-  }
-  return panel;
-}
-
-Panel difference_panel(const predict::PredictionFolder& prediction, const std::vector<TestRecord>& dem,
-                       const Predicted& quantity, const Abscissa& abscissa) {
-  Panel panel;
-  panel.x = strain_axis(abscissa);
-  panel.y.label = notation(quantity.difference);
-  panel.y.include = 0;
-  panel.zero_line = true;
-  const bool from_law =
-      std::any_of(prediction.curves.begin(), prediction.curves.end(),
-                  [](const predict::PredictedCurve& drawn) { return drawn.seed && drawn.initial == predict::Initial::law; });
-  for (const predict::PredictedCurve& drawn : prediction.curves) {
-    if (!drawn.seed || (from_law && drawn.initial != predict::Initial::law)) continue;
-    for (const TestRecord& test : dem) {
-      if (test.packing.seed == *drawn.seed) panel.series.push_back(difference_line(drawn, test, quantity, abscissa));
+  const std::vector<const PredictedCurve*> curves = distinct_curves(shown.prediction);
+  const PredictedCurve* const banded = banded_curve(shown.prediction, curves);
+  for (const PredictedCurve* drawn : curves) {
+    Series& line = panel.series.emplace_back(through(law_line(*drawn), drawn->prediction.rows, x, quantity.of));
+    if (drawn != banded) continue;
+    line.bands.resize(2);
+    for (const PredictedRow& row : drawn->prediction.rows) {
+      line.bands[0].push_back(row.mean.*quantity.band);
+      line.bands[1].push_back(row.single.*quantity.band);
     }
   }
   return panel;
 }
 
-std::string in_folder(const predict::PredictionFolder& prediction, const std::string& file) {
-  return "predictions/" + prediction.name + "/" + file;
+/// Law minus DEM row by row: such a curve was computed at the rows of the run of its seed.
+Panel difference_panel(const Shown& shown, const Predicted& quantity) {
+  Panel panel = shown.panel(quantity.difference);
+  panel.zero_line = true;
+  const auto& curves = shown.prediction.curves;
+  const bool from_law = std::any_of(curves.begin(), curves.end(), [](const PredictedCurve& drawn) {
+    return drawn.seed && drawn.initial == Initial::law;
+  });
+  for (const PredictedCurve& drawn : curves) {
+    if (!drawn.seed || (from_law && drawn.initial != Initial::law)) continue;
+    for (const TestRecord& test : shown.dem) {
+      if (test.packing.seed != *drawn.seed) continue;
+      Series& line = panel.series.emplace_back(law_line(drawn, 1));
+      for (std::size_t i = 0; i < std::min(drawn.prediction.rows.size(), test.rows.size()); ++i) {
+        line.x.push_back(shown.x(test.rows[i]));
+        line.y.push_back(quantity.of(drawn.prediction.rows[i]) - test.rows[i].*quantity.measured);
+      }
+    }
+  }
+  return panel;
 }
 
 }  // namespace
 
 Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_t index) {
-  const std::vector<TestRecord> dem = dem_records(prediction);
-  Figure figure;
-  figure.id = fmt::format("prediction-{}", index + 1);
-  figure.title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
-                             prediction.path.nu, to_string(prediction.path.branch));
-  figure.description =
-      "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs on "
-      "packings that the calibration never saw, lines the predictions of the law. Below them the differences.";
-  const Text note =
-      plain(fmt::format(" The path needs {}: {}. Bands, about that rung's curve from the law's start: {}.",
-                        to_string(prediction.needed.rung), prediction.needed.why, prediction.bands));
-  figure.caption =
-      dem.empty() ? plain("No DEM run of this path; grainlaw predict with --dem makes them.")
-                  : plain("DEM on packings that the calibration never saw (" + seed_count(dem) +
-                          "). Below: the law, from its own start where there is one, minus DEM, row by row, a thin "
-                          "line for each run.");
-  figure.caption = figure.caption + note;
-  figure.sources = {in_folder(prediction, "prediction.json"), in_folder(prediction, "*.csv")};
-  if (!dem.empty()) figure.sources.push_back(in_folder(prediction, "dem/"));
-  figure.columns = 3;
-  figure.panel_height = dem.empty() ? 250 : 210;
-
-  const Abscissa abscissa = abscissa_of(prediction, dem);
-  for (const Predicted& quantity : kPredicted)
-    figure.panels.push_back(value_panel(prediction, dem, quantity, abscissa));
-  if (!dem.empty()) {
-    for (const Predicted& quantity : kPredicted) {
-      figure.panels.push_back(difference_panel(prediction, dem, quantity, abscissa));
-    }
+  const Shown shown = shown_of(prediction);
+  const bool compared = !shown.dem.empty();
+  std::vector<Panel> panels;
+  for (const Predicted& quantity : kPredicted) panels.push_back(value_panel(shown, quantity));
+  for (const Predicted& quantity : kPredicted) {
+    if (compared) panels.push_back(difference_panel(shown, quantity));
   }
-  return figure;
+  const std::string folder = "predictions/" + prediction.name + "/";
+  std::vector<std::string> sources{folder + "prediction.json", folder + "*.csv"};
+  if (compared) sources.push_back(folder + "dem/");
+  const std::string runs =
+      compared ? "DEM on packings that the calibration never saw (" + seed_count(shown.dem) +
+                     "). Below: the law, from its own start where there is one, minus DEM, row by row, a thin line for "
+                     "each run."
+               : "No DEM run of this path; grainlaw predict with --dem makes them.";
+  return {
+      .id = fmt::format("prediction-{}", index + 1),
+      .title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
+                           prediction.path.nu, to_string(prediction.path.branch)),
+      .description =
+          "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs "
+          "on packings that the calibration never saw, lines the predictions of the law. Below them the differences.",
+      .caption = plain(fmt::format("{} The path needs {}: {}. Bands, about that rung's curve from the law's start: {}.",
+                                   runs, to_string(prediction.needed.rung), prediction.needed.why, prediction.bands)),
+      .sources = sources,
+      .panels = panels,
+      .columns = 3,
+      .panel_height = compared ? 210.0 : 250.0};
 }
 
 }  // namespace grainlaw::app::report

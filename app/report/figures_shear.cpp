@@ -5,9 +5,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "app/report/dem_series.hpp"
 #include "app/report/figures.hpp"
-#include "app/report/law_curves.hpp"
+#include "app/report/series.hpp"
 #include "model/reduced_law.hpp"
 
 namespace grainlaw::app::report {
@@ -20,20 +19,12 @@ struct Saturation {
   const char* symbol;
   const char* equation;
   std::array<const char*, 2> groups;  ///< of parameters that `law` reads
-  Quantity measured;
+  double Observation::*measured;
   Estimate fit::ShearFit::*limit;
   Estimate fit::ShearFit::*rate;
   double fit::ShearFit::*start;
   double (*law)(const LawParameters<double>&, double nu, double eps_dev);
 };
-
-std::vector<const TestRecord*> shear_tests(const ReportInput& input) {
-  std::vector<const TestRecord*> tests;
-  for (const TestRecord& test : input.tests) {
-    if (is_pure_shear(test)) tests.push_back(&test);
-  }
-  return tests;
-}
 
 /// Mode, branch and density: what one panel shows.
 struct PanelKey {
@@ -42,7 +33,7 @@ struct PanelKey {
   double nu;
 
   bool matches(const TestRecord& test) const {
-    return test.path.segments.front().mode == mode && test.path.branch == branch && std::abs(test.path.nu - nu) < 1e-6;
+    return test.path.segments.front().mode == mode && test.path.branch == branch && is_same_density(test.path.nu, nu);
   }
 };
 
@@ -59,12 +50,11 @@ std::vector<PanelKey> panel_keys(const std::vector<const TestRecord*>& tests) {
   return keys;
 }
 
-Text panel_title(const PanelKey& key, const std::vector<PanelKey>& keys) {
+std::string panel_title(const PanelKey& key, const std::vector<PanelKey>& keys) {
   const bool several_modes =
       std::any_of(keys.begin(), keys.end(), [&](const PanelKey& other) { return other.mode != key.mode; });
-  std::string prefix = several_modes ? to_string(key.mode) + ", " : "";
-  if (key.branch == Branch::loading) prefix += "loading branch, ";
-  return plain(prefix) + notation(fmt::format("{{ν}} = {:.3f}", key.nu));
+  return fmt::format("{}{}{{ν}} = {:.3f}", several_modes ? to_string(key.mode) + ", " : "",
+                     key.branch == Branch::loading ? "loading branch, " : "", key.nu);
 }
 
 double largest_strain(const TestRecord& test) {
@@ -75,67 +65,67 @@ double largest_strain(const TestRecord& test) {
   return largest;
 }
 
+/// A run, and Eq. (17) or (18) fitted to it where that was possible.
 void add_run(Panel& panel, const TestRecord& test, const ReportInput& input, const Saturation& what, std::size_t seed) {
   const std::string number = std::to_string(test.packing.seed);
-  panel.series.push_back(dem_symbols(test, &Observation::eps_dev, what.measured, 70, plain("DEM seed " + number),
-                                     colour_of(seed), marker_of(seed)));
-  const auto& fits = input.calibration.shear;
-  const auto found =
-      std::find_if(fits.begin(), fits.end(), [&](const fit::ShearFit& f) { return f.test == test.name; });
-  if (found == fits.end()) return;
-  if (((*found).*what.limit).status == Status::not_identified ||
-      ((*found).*what.rate).status == Status::not_identified) {
+  panel.series.push_back(through(open_symbols(plain("DEM seed " + number), colour_of(seed), marker_of(seed), 2),
+                                 symbol_rows(test, 70), &Observation::eps_dev, what.measured));
+  for (const fit::ShearFit& fit : input.calibration.shear) {
+    if (fit.test != test.name) continue;
+    const Estimate &limit = fit.*what.limit, &rate = fit.*what.rate;
+    if (limit.status == Status::not_identified || rate.status == Status::not_identified) return;
+    panel.series.push_back(curve(line_of(plain("fit of seed " + number), colour_of(seed), Line::solid), 0,
+                                 largest_strain(test),
+                                 [&](double e) { return saturating(limit.value, fit.*what.start, rate.value, e); }));
     return;
   }
-  const double limit = ((*found).*what.limit).value, rate = ((*found).*what.rate).value, start = (*found).*what.start;
-  panel.series.push_back(curve(plain("fit of seed " + number), colour_of(seed), Line::solid, 0, largest_strain(test),
-                               [=](double e) { return saturating(limit, start, rate, e); }));
 }
 
 Figure saturation_figure(const ReportInput& input, const Saturation& what) {
-  Figure figure;
-  figure.id = what.id;
-  figure.title = what.title;
-  figure.description = fmt::format(
-      "One panel per density. Over deviatoric strain the quantity rises from about zero and saturates; the plateau "
-      "is lower at higher density. Symbols are DEM runs, solid lines the fits of Eq. {}, dashed lines the published "
-      "law.",
-      what.equation);
-  figure.caption = notation(fmt::format(
-      "Signed along the direction of shear. Solid: Eq. {} fitted to each run; dotted: the same equation with the "
-      "parameters after the coupled fit, started from zero; dashed: with Table 3 of the paper.",
-      what.equation));
-  figure.sources = {"dataset/", "calibration.json", "parameters.json"};
-  figure.shared_axes = true;
-  figure.panel_height = 190;
-
-  const auto tests = shear_tests(input);
+  std::vector<const TestRecord*> tests;
+  for (const TestRecord& test : input.tests) {
+    if (is_pure_shear(test)) tests.push_back(&test);
+  }
   const auto keys = panel_keys(tests);
   const auto seeds = seeds_of(input.tests);
-  const LawParameters<double> published = published_parameters();
-  figure.columns = keys.size() <= 4 ? 2 : keys.size() <= 9 ? 3 : 4;
+  const bool known =
+      has_values(input.calibration.law, what.groups[0]) && has_values(input.calibration.law, what.groups[1]);
+  std::vector<Panel> panels;
   for (const PanelKey& key : keys) {
-    Panel panel;
-    panel.title = panel_title(key, keys);
-    panel.x.label = notation("deviatoric strain {ε}_{dev} [–]");
-    panel.x.include = 0;
-    panel.y.label = notation(what.symbol);
-    panel.y.include = 0;
+    Panel& panel = panels.emplace_back(panel_of(panel_title(key, keys).c_str(), kStrainLabel, what.symbol));
+    panel.x.include = panel.y.include = 0;
     double end = 0;
     for (const TestRecord* test : tests) {
       if (!key.matches(*test)) continue;
       add_run(panel, *test, input, what, index_of(seeds, test->packing.seed));
       end = std::max(end, largest_strain(*test));
     }
-    if (has_values(input.calibration.law, what.groups[0]) && has_values(input.calibration.law, what.groups[1])) {
-      panel.series.push_back(curve(plain("law, final parameters"), Colour::ink, Line::dotted, 0, end,
-                                   [&](double e) { return what.law(input.calibration.law.parameters, key.nu, e); }));
-    }
-    panel.series.push_back(curve(plain("published"), Colour::ink, Line::dashed, 0, end,
-                                 [&](double e) { return what.law(published, key.nu, e); }));
-    figure.panels.push_back(panel);
+    const auto add_law = [&](const char* name, Line line, const LawParameters<double>& p) {
+      panel.series.push_back(
+          curve(line_of(plain(name), Colour::ink, line), 0, end, [&](double e) { return what.law(p, key.nu, e); }));
+    };
+    if (known) add_law("law, final parameters", Line::dotted, input.calibration.law.parameters);
+    add_law("published", Line::dashed, published_parameters());
   }
-  return figure;
+  return {
+      .id = what.id,
+      .title = what.title,
+      .description = fmt::format(
+          "One panel per density. Over deviatoric strain the quantity rises from about zero and saturates; the "
+          "plateau is lower at higher density. Symbols are DEM runs, solid lines the fits of Eq. {}, dashed lines "
+          "the published law.",
+          what.equation),
+      .caption = notation(fmt::format(
+          "Signed along the direction of shear. Solid: Eq. {} fitted to each run; dotted: the same equation with the "
+          "parameters after the coupled fit, started from zero; dashed: with Table 3 of the paper.",
+          what.equation)),
+      .sources = {"dataset/", "calibration.json", "parameters.json"},
+      .panels = panels,
+      .columns = keys.size() <= 4   ? 2
+                 : keys.size() <= 9 ? 3
+                                    : 4,
+      .panel_height = 190,
+      .shared_axes = true};
 }
 
 }  // namespace

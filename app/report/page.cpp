@@ -52,12 +52,6 @@ constexpr const char* kTemplate = R"(<!DOCTYPE html>
 
 using kainjow::mustache::data;
 
-data html_list(const std::vector<std::string>& blocks) {
-  data list{data::type::list};
-  for (const std::string& block : blocks) list << data{"html", block};
-  return list;
-}
-
 std::string file_list(const std::vector<std::string>& files) {
   std::string html;
   for (const std::string& file : files) {
@@ -68,16 +62,9 @@ std::string file_list(const std::vector<std::string>& files) {
 }
 
 /// `characters` of its text; 0 in a heading.
-const char* cell_class(TableColumn::Content content, std::size_t characters) {
-  switch (content) {
-    case TableColumn::Content::words:
-      return characters > 30 ? " class=\"long\"" : "";
-    case TableColumn::Content::symbol:
-      return " class=\"symbol\"";
-    case TableColumn::Content::number:
-      return " class=\"number\"";
-  }
-  return "";
+const char* cell_class(Content content, std::size_t characters) {
+  if (content == Content::words) return characters > 30 ? " class=\"long\"" : "";
+  return content == Content::symbol ? " class=\"symbol\"" : " class=\"number\"";
 }
 
 /// JSON has no NaN: what is undefined becomes null.
@@ -114,29 +101,27 @@ std::string figure_data(const Figure& figure) {
     document["panels"].push_back(entry);
   }
   std::string safe;
-  for (const char c : document.dump(-1, ' ', /*ensure_ascii=*/true)) {
-    switch (c) {
-      case '<':
-        safe += "\\u003c";
-        break;
-      case '>':
-        safe += "\\u003e";
-        break;
-      case '&':
-        safe += "\\u0026";
-        break;
-      default:
-        safe += c;
-    }
-  }
+  for (const char c : document.dump(-1, ' ', /*ensure_ascii=*/true))
+    safe += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", static_cast<int>(c)) : std::string(1, c);
   return safe;
 }
 
-}  // namespace
+std::string html_of(const Paragraph& paragraph) { return "<p>" + to_html(paragraph.text) + "</p>"; }
 
-std::string paragraph_html(const Text& text) { return "<p>" + to_html(text) + "</p>"; }
+std::string html_of(const Warning& warning) {
+  std::string html = "<p class=\"warning\">" + to_html(plain(warning.text));
+  if (!warning.section.empty())
+    html += "<a href=\"#" + warning.section + "\">" + to_html(plain(warning.link)) + "</a>.";
+  return html + "</p>";
+}
 
-std::string table_html(const Table& table) {
+std::string html_of(const Items& items) {
+  std::string html = "<ul>\n";
+  for (const std::string& line : items.lines) html += "<li>" + to_html(plain(line)) + "</li>\n";
+  return html + "</ul>";
+}
+
+std::string html_of(const Table& table) {
   std::string html = "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" +
                      to_html(plain(table.caption)) + "\">\n<table>\n<caption>" + to_html(plain(table.caption));
   if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
@@ -149,15 +134,16 @@ std::string table_html(const Table& table) {
     html += "<tr>";
     for (std::size_t i = 0; i < row.size() && i < table.columns.size(); ++i) {
       const char* const tag = i == 0 ? "th" : "td";
-      html += fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "",
-                          cell_class(table.columns[i].content, character_count(row[i])), to_html(row[i]), tag);
+      html +=
+          fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "",
+                      cell_class(table.columns[i].content, character_count(row[i].text)), to_html(row[i].text), tag);
     }
     html += "</tr>\n";
   }
   return html + "</tbody>\n</table>\n</div>";
 }
 
-std::string figure_html(const Figure& figure) {
+std::string html_of(const Figure& figure) {
   const RenderedFigure rendered = render_svg(figure);
   std::string html = fmt::format("<figure id=\"{}\">\n<div class=\"scroll\">{}</div>\n<figcaption><b>{}.</b> {}",
                                  figure.id, rendered.svg, to_html(plain(figure.title)), to_html(figure.caption));
@@ -172,6 +158,22 @@ std::string figure_html(const Figure& figure) {
                       figure_data(figure));
   return html;
 }
+
+std::string html_of(const Block& block) {
+  std::string html;
+  for (const BlockContent& content : block.contents)
+    html += std::visit([](const auto& value) { return html_of(value); }, content);
+  if (block.summary.empty()) return html;
+  return "<details>\n<summary>" + to_html(plain(block.summary)) + "</summary>\n" + html + "\n</details>";
+}
+
+data html_list(const std::vector<Block>& blocks) {
+  data list{data::type::list};
+  for (const Block& block : blocks) list << data{"html", html_of(block)};
+  return list;
+}
+
+}  // namespace
 
 std::string page_html(const Page& page) {
   data sections{data::type::list};

@@ -1,43 +1,51 @@
 #pragma once
-// The page around figures and tables: one HTML document that needs nothing from outside and no script to be read.
+// The page as plain data, and as one HTML document that needs nothing from outside and no script to be read.
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "app/report/figure.hpp"
+#include "app/report/table.hpp"
 
 namespace grainlaw::app::report {
 
-struct TableColumn {
-  enum class Content { words, symbol, number };  ///< may wrap, may not, aligned to the right
-  Text heading;
-  Content content = Content::number;
+struct Paragraph {
+  Text text;
 };
 
-struct Table {
-  std::string caption;  ///< one line, above the table
-  std::vector<TableColumn> columns;
-  std::vector<std::vector<Text>> rows;  ///< as many cells as columns
-  std::string source;                   ///< file, may be empty
+/// Set apart from the text; may end with a link to a section of the page.
+struct Warning {
+  std::string text;
+  std::string section = {};  ///< id; empty: no link
+  std::string link = {};     ///< words of the link
+};
+
+struct Items {
+  std::vector<std::string> lines;
+};
+
+using BlockContent = std::variant<Paragraph, Warning, Items, Table, Figure>;
+
+/// What stands together; with a summary it is folded under these words.
+struct Block {
+  std::vector<BlockContent> contents;
+  std::string summary = {};
 };
 
 struct Section {
   std::string id;  ///< letters, digits and '-'
   std::string heading;
-  std::vector<std::string> blocks;  ///< HTML made by the functions below
+  std::vector<Block> blocks;
 };
 
 struct Page {
   std::string title;
-  std::vector<std::string> lead;  ///< HTML blocks before the contents
+  std::vector<Block> lead;  ///< before the contents
   std::vector<Section> sections;
 };
 
-std::string paragraph_html(const Text& text);
-std::string table_html(const Table& table);
-/// Figure, caption, sources, count of points not drawn, and the numbers themselves as JSON for scripts to come.
-std::string figure_html(const Figure& figure);
-
+/// A figure comes with caption, sources, count of points not drawn, and its numbers as JSON for scripts to come.
 std::string page_html(const Page& page);
 
 /// The style sheet: light, dark and print.

@@ -127,6 +127,19 @@ std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction)
   return records;
 }
 
+std::vector<Misfit> coupled_misfits(const ReportInput& input) {
+  std::vector<Misfit> misfits;
+  for (const fit::Stage& stage : input.calibration.stages) {
+    if (stage.name != "evolution") continue;
+    for (const fit::TestResidual& residual : stage.tests) {
+      for (const TestRecord& test : input.tests) {
+        if (test.name == residual.test) misfits.push_back({residual, test});
+      }
+    }
+  }
+  return misfits;
+}
+
 void add_facts(const Json& document, const std::string& prefix, const std::string& file, std::vector<Fact>& facts) {
   if (document.is_null()) return;
   if (document.is_object()) {

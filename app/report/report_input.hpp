@@ -40,6 +40,13 @@ CalibratedLaw read_fitted_parameters(const std::filesystem::path& dir);
 /// The DEM runs of a prediction; empty when it was made without --dem.
 std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction);
 
+/// A residual of the coupled fit and the test that it is of.
+struct Misfit {
+  const fit::TestResidual& residual;
+  const TestRecord& test;
+};
+std::vector<Misfit> coupled_misfits(const ReportInput& input);
+
 /// `document` as lines "outer.inner: value", arrays on one line, null left out. A line that is there already only
 /// gains a file.
 void add_facts(const Json& document, const std::string& prefix, const std::string& file, std::vector<Fact>& facts);

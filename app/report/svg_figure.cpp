@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "app/report/axis.hpp"
-#include "app/report/svg_marks.hpp"
+#include "app/report/page.hpp"
+#include "app/report/svg_series.hpp"
+#include "model/files/durable_file.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -16,192 +16,56 @@ namespace {
 constexpr double kWidth = 960;
 constexpr double kCharacterWidth = 6.6;
 constexpr double kLegendRow = 20, kLegendKey = 30, kLegendGap = 22;
-constexpr double kLeft = 74, kLeftShared = 8, kRight = 16;  // half of a label to the right
+constexpr double kLeft = 74, kLeftShared = 8,
+                 kRight = 16;  // half of a label to the right
 constexpr double kTitle = 22, kBottom = 44, kBottomShared = 12;
 
-struct Box {
-  double left = 0, top = 0, width = 0, height = 0;  ///< of the axes, without labels
-};
-
-/// Smallest and largest defined value along one axis of the given panels.
-struct Extent {
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -std::numeric_limits<double>::infinity();
-
-  void add(double value, const AxisStyle& style) {
-    if (!std::isfinite(value) || (style.logarithmic && value <= 0)) return;
-    if (style.floor && value < *style.floor) return;
-    lowest = std::min(lowest, value);
-    highest = std::max(highest, value);
-  }
-};
-
-Axis make_axis(const std::vector<const Panel*>& panels, bool horizontal, int wanted_ticks) {
-  const AxisStyle& style = horizontal ? panels.front()->x : panels.front()->y;
-  Extent extent;
-  for (const Panel* panel : panels) {
-    for (const Series& series : panel->series) {
-      const auto& values = horizontal ? series.x : series.y;
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        // What is not drawn must not stretch the axis.
-        if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
-        extent.add(values[i], style);
-        if (!horizontal && i < series.y_error.size()) {
-          extent.add(values[i] - series.y_error[i], style);
-          extent.add(values[i] + series.y_error[i], style);
-        }
-        for (const std::vector<double>& band : series.bands) {
-          if (horizontal) break;
-          extent.add(values[i] - band[i], style);
-          extent.add(values[i] + band[i], style);
-        }
-      }
-    }
-  }
-  if (style.include) extent.add(*style.include, style);
-  if (!(extent.lowest <= extent.highest)) extent = style.logarithmic ? Extent{0.1, 1} : Extent{0, 1};
-  const double lowest = style.from.value_or(extent.lowest), highest = style.to.value_or(extent.highest);
-  if (style.logarithmic) return logarithmic_axis(lowest, highest, wanted_ticks);
-  if (style.from && style.to) return linear_axis(lowest, highest, wanted_ticks, true);
-  Axis axis = linear_axis(lowest, highest, wanted_ticks);
-  if (style.from || style.to) {
-    axis = linear_axis(style.from.value_or(axis.from), style.to.value_or(axis.to), wanted_ticks, true);
-  }
-  return axis;
+std::string text_element(double x, double y, const std::string& attributes, const Text& text) {
+  return fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", pixels(x), pixels(y), attributes, to_svg(text));
 }
 
-std::string text_element(double x, double y, const std::string& attributes, const std::string& content) {
-  return fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", pixels(x), pixels(y), attributes, content);
+constexpr const char* kCentred = " text-anchor=\"middle\"";
+
+/// Grid, ticks, numbers and labels of a panel.
+std::string frame_svg(const Panel& panel, const Frame& frame, bool x_numbers, bool y_numbers) {
+  const double left = frame.left, top = frame.top, bottom = top + frame.height, right = left + frame.width;
+  const double centre = left + frame.width / 2;
+  std::string grid, ticks, numbers;
+  for (const Tick& tick : frame.x.ticks) {
+    const double x = frame.px(tick.value);
+    const bool major = !tick.label.runs.empty();
+    if (major) grid += fmt::format("M{} {}V{}", pixels(x), pixels(top), pixels(bottom));
+    ticks += fmt::format("M{} {}v{}", pixels(x), pixels(bottom), major ? 5 : 3);
+    if (major && x_numbers) numbers += text_element(x, bottom + 18, kCentred, tick.label);
+  }
+  std::size_t longest = 4;
+  for (const Tick& tick : frame.y.ticks) {
+    const double y = frame.py(tick.value);
+    const bool major = !tick.label.runs.empty();
+    if (major) grid += fmt::format("M{} {}H{}", pixels(left), pixels(y), pixels(right));
+    ticks += fmt::format("M{} {}h-{}", pixels(left), pixels(y), major ? 5 : 3);
+    if (major && y_numbers) numbers += text_element(left - 8, y + 4, " text-anchor=\"end\"", tick.label);
+    longest = std::max(longest, character_count(tick.label));
+  }
+  std::string out = fmt::format("<path class=\"grid\" d=\"{}\"/>\n<path class=\"axis\" d=\"{}\"/>\n", grid, ticks);
+  if (panel.zero_line && frame.y.from < 0 && frame.y.to > 0) {
+    out += fmt::format("<path class=\"axis\" d=\"M{} {}H{}\"/>\n", pixels(left), pixels(frame.py(0)), pixels(right));
+  }
+  out += fmt::format("<rect class=\"axis\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", pixels(left), pixels(top),
+                     pixels(frame.width), pixels(frame.height));
+  out += numbers;
+  if (!panel.title.runs.empty()) {
+    out += text_element(centre, top - 7, std::string(" class=\"title\"") + kCentred, panel.title);
+  }
+  if (x_numbers) out += text_element(centre, bottom + 37, kCentred, panel.x.label);
+  if (y_numbers) {
+    const double x = left - 17 - kCharacterWidth * static_cast<double>(std::min<std::size_t>(longest, 7)),
+                 y = top + frame.height / 2;
+    out += text_element(x, y, fmt::format("{} transform=\"rotate(-90 {} {})\"", kCentred, pixels(x), pixels(y)),
+                        panel.y.label);
+  }
+  return out;
 }
-
-struct PanelRenderer {
-  const Panel& panel;
-  Axis x, y;
-  Box box;
-  bool x_numbers = true, y_numbers = true;
-  std::string clip;  ///< id of the clip path
-  int undefined = 0, outside = 0;
-
-  double px(double value) const { return box.left + near(x.fraction(value)) * box.width; }
-  double py(double value) const { return box.top + (1 - near(y.fraction(value))) * box.height; }
-
-  /// Far outside is as good as just outside, and keeps the numbers in the file small.
-  static double near(double fraction) { return std::clamp(fraction, -3.0, 4.0); }
-
-  std::string frame() const {
-    const double bottom = box.top + box.height, right = box.left + box.width;
-    std::string grid, ticks, numbers;
-    for (const Tick& tick : x.ticks) {
-      const std::string at = pixels(px(tick.value));
-      const bool major = !tick.label.runs.empty();
-      if (major) grid += fmt::format("M{} {}V{}", at, pixels(box.top), pixels(bottom));
-      ticks += fmt::format("M{} {}v{}", at, pixels(bottom), major ? 5 : 3);
-      if (major && x_numbers) {
-        numbers += text_element(px(tick.value), bottom + 18, " text-anchor=\"middle\"", to_svg(tick.label));
-      }
-    }
-    for (const Tick& tick : y.ticks) {
-      const std::string at = pixels(py(tick.value));
-      const bool major = !tick.label.runs.empty();
-      if (major) grid += fmt::format("M{} {}H{}", pixels(box.left), at, pixels(right));
-      ticks += fmt::format("M{} {}h-{}", pixels(box.left), at, major ? 5 : 3);
-      if (major && y_numbers) {
-        numbers += text_element(box.left - 8, py(tick.value) + 4, " text-anchor=\"end\"", to_svg(tick.label));
-      }
-    }
-    std::string out = fmt::format("<path class=\"grid\" d=\"{}\"/>\n<path class=\"axis\" d=\"{}\"/>\n", grid, ticks);
-    if (panel.zero_line && y.from < 0 && y.to > 0) {
-      out += fmt::format("<path class=\"axis\" d=\"M{} {}H{}\"/>\n", pixels(box.left), pixels(py(0)), pixels(right));
-    }
-    out += fmt::format("<rect class=\"axis\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", pixels(box.left),
-                       pixels(box.top), pixels(box.width), pixels(box.height));
-    out += numbers;
-    if (!panel.title.runs.empty()) {
-      out += text_element(box.left + box.width / 2, box.top - 7, " class=\"title\" text-anchor=\"middle\"",
-                          to_svg(panel.title));
-    }
-    if (x_numbers) {
-      out += text_element(box.left + box.width / 2, bottom + 37, " text-anchor=\"middle\"", to_svg(panel.x.label));
-    }
-    if (y_numbers) {
-      std::size_t longest = 4;
-      for (const Tick& tick : y.ticks) longest = std::max(longest, character_count(tick.label));
-      const double lx = box.left - 17 - kCharacterWidth * static_cast<double>(std::min<std::size_t>(longest, 7)),
-                   ly = box.top + box.height / 2;
-      out += text_element(
-          lx, ly, fmt::format(" text-anchor=\"middle\" transform=\"rotate(-90 {} {})\"", pixels(lx), pixels(ly)),
-          to_svg(panel.y.label));
-    }
-    return out;
-  }
-
-  bool within(double vx, double vy) const {
-    const double slack = 1e-9, fx = x.fraction(vx), fy = y.fraction(vy);
-    return fx >= -slack && fx <= 1 + slack && fy >= -slack && fy <= 1 + slack;
-  }
-
-  std::string shade(const Series& series, const std::vector<double>& half_width) const {
-    std::vector<std::vector<PixelPoint>> runs(1);
-    for (std::size_t i = 0; i < series.x.size(); ++i) {
-      const double vx = series.x[i], low = series.y[i] - half_width[i], high = series.y[i] + half_width[i];
-      if (!x.defined_at(vx) || !y.defined_at(low) || !y.defined_at(high)) {
-        if (!runs.back().empty()) runs.emplace_back();
-        continue;
-      }
-      runs.back().push_back({px(vx), py(series.y[i]), py(low), py(high)});
-    }
-    const std::string path = band_path(runs);
-    if (path.empty()) return path;
-    return fmt::format("<path class=\"band\" d=\"{}\" fill=\"currentColor\" fill-opacity=\"0.14\"/>", path);
-  }
-
-  std::string ink(const Series& series) {
-    std::vector<PixelPoint> symbols;
-    std::vector<std::vector<PixelPoint>> runs(1);
-    for (std::size_t i = 0; i < series.x.size(); ++i) {
-      const double vx = series.x[i], vy = series.y[i];
-      if (!x.defined_at(vx) || !y.defined_at(vy)) {
-        ++undefined;
-        if (!runs.back().empty()) runs.emplace_back();
-        continue;
-      }
-      PixelPoint p{px(vx), py(vy), 0, 0};
-      if (i < series.y_error.size() && y.defined_at(vy - series.y_error[i]) && series.y_error[i] > 0) {
-        p.y_low = py(vy - series.y_error[i]);
-        p.y_high = py(vy + series.y_error[i]);
-      }
-      runs.back().push_back(p);
-      if (within(vx, vy)) {
-        symbols.push_back(p);
-      } else if (series.marker != Marker::none) {
-        ++outside;
-      }
-    }
-    std::string out;
-    for (const std::vector<double>& band : series.bands) out += shade(series, band);
-    const std::string bars = error_bar_path(symbols);
-    if (!bars.empty()) out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"currentColor\"/>", bars);
-    if (series.line != Line::none) {
-      out += fmt::format("<path d=\"{}\"{}/>", line_path(runs), line_attributes(series.line, series.line_width));
-    }
-    if (series.marker != Marker::none) {
-      out += fmt::format("<path d=\"{}\"{}/>", marker_path(series.marker, series.marker_size, symbols),
-                         marker_attributes(series.marker, series.open_marker));
-    }
-    const std::string label = escape_markup(to_plain(series.label));
-    return fmt::format("<g class=\"{}\"><title>{}</title>{}</g>\n", colour_class(series.colour), label, out);
-  }
-
-  std::string render() {
-    std::string out =
-        fmt::format("<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n", clip,
-                    pixels(box.left), pixels(box.top), pixels(box.width), pixels(box.height));
-    out += frame();
-    out += fmt::format("<g clip-path=\"url(#{})\">\n", clip);
-    for (const Series& series : panel.series) out += ink(series);
-    return out + "</g>\n";
-  }
-};
 
 struct Legend {
   std::string svg;
@@ -224,18 +88,7 @@ Legend make_legend(const Figure& figure) {
         x = 10;
         y += kLegendRow;
       }
-      legend.svg += fmt::format("<g class=\"{}\">", colour_class(series.colour));
-      const PixelPoint left{x, y - 4, 0, 0}, middle{x + 12, y - 4, 0, 0}, right{x + 24, y - 4, 0, 0};
-      if (series.line != Line::none) {
-        legend.svg += fmt::format("<path d=\"{}\"{}/>", line_path({{left, right}}),
-                                  line_attributes(series.line, series.line_width));
-      }
-      if (series.marker != Marker::none) {
-        legend.svg +=
-            fmt::format("<path d=\"{}\"{}/>", marker_path(series.marker, std::max(3.0, series.marker_size), {middle}),
-                        marker_attributes(series.marker, series.open_marker));
-      }
-      legend.svg += "</g>" + text_element(x + kLegendKey, y, "", to_svg(series.label));
+      legend.svg += legend_key(series, x, y - 4) + text_element(x + kLegendKey, y, "", series.label);
       x += width;
     }
   }
@@ -243,10 +96,31 @@ Legend make_legend(const Figure& figure) {
   return legend;
 }
 
+/// `style` with each declaration that reads a variable preceded by one with its
+/// first value, the light page's: viewers that know no variables skip the
+/// second, others the first.
+std::string with_plain_colours(const std::string& style) {
+  const std::string reads = "var(--";
+  std::string out;
+  std::size_t copied = 0;
+  for (std::size_t at = style.find(reads); at != std::string::npos; at = style.find(reads, copied)) {
+    const std::size_t closed = style.find(')', at), end = style.find(';', at);
+    const std::size_t begin = style.find_first_not_of(' ', style.find_last_of("{;", at) + 1);
+    const std::size_t name = at + reads.size();
+    const std::string defined = "--" + style.substr(name, closed - name) + ": ";
+    const std::size_t value = style.find(defined) + defined.size();
+    out += style.substr(copied, begin - copied) + style.substr(begin, at - begin) +
+           style.substr(value, style.find(';', value) - value) + style.substr(closed + 1, end - closed) + " ";
+    copied = begin;
+    out += style.substr(copied, end - copied);
+    copied = end;
+  }
+  return out + style.substr(copied);
+}
+
 }  // namespace
 
 RenderedFigure render_svg(const Figure& figure) {
-  RenderedFigure rendered;
   const Legend legend = make_legend(figure);
   const int count = static_cast<int>(figure.panels.size());
   const int columns = std::max(1, std::min(figure.columns, count));
@@ -255,36 +129,51 @@ RenderedFigure render_svg(const Figure& figure) {
   std::vector<const Panel*> all;
   for (const Panel& panel : figure.panels) all.push_back(&panel);
 
-  const double first_left = kLeft;
   const double column_left = shared ? kLeftShared : kLeft;
-  const double width = (kWidth - first_left - column_left * (columns - 1) - kRight * columns) / columns;
+  const double width = (kWidth - kLeft - column_left * (columns - 1) - kRight * columns) / columns;
   const double row_height = kTitle + figure.panel_height + (shared ? kBottomShared : kBottom);
   const double height = legend.height + rows * row_height + (shared ? kBottom - kBottomShared : 0);
 
   std::string body;
+  Unseen unseen;
   for (int i = 0; i < count; ++i) {
     const Panel& panel = figure.panels[static_cast<std::size_t>(i)];
     const int row = i / columns, column = i % columns;
     const auto panels = shared ? all : std::vector<const Panel*>{&panel};
-    const int x_ticks = std::max(3, static_cast<int>(width / 60));
-    PanelRenderer renderer{panel, make_axis(panels, true, x_ticks), make_axis(panels, false, 5), {}, true, true, {}};
-    renderer.box = {first_left + column * (width + kRight + column_left), legend.height + row * row_height + kTitle,
-                    width, figure.panel_height};
-    renderer.x_numbers = !shared || i + columns >= count;
-    renderer.y_numbers = !shared || column == 0;
-    renderer.clip = fmt::format("{}-clip-{}", figure.id, i);
-    body += renderer.render();
-    rendered.undefined_points += renderer.undefined;
-    rendered.outside_points += renderer.outside;
+    const Frame frame{shared_axis(panels, true, std::max(3, static_cast<int>(width / 60))),
+                      shared_axis(panels, false, 5),
+                      kLeft + column * (width + kRight + column_left),
+                      legend.height + row * row_height + kTitle,
+                      width,
+                      figure.panel_height};
+    const std::string clip = fmt::format("{}-clip-{}", figure.id, i);
+    body += fmt::format(
+        "<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" "
+        "width=\"{}\" height=\"{}\"/></clipPath>\n",
+        clip, pixels(frame.left), pixels(frame.top), pixels(frame.width), pixels(frame.height));
+    body += frame_svg(panel, frame, !shared || i + columns >= count, !shared || column == 0);
+    body += fmt::format("<g clip-path=\"url(#{})\">\n", clip);
+    for (const Series& series : panel.series) body += series_svg(series, frame, unseen);
+    body += "</g>\n";
   }
-  rendered.svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" "
-      "aria-labelledby=\"{}-title {}-description\">\n<title id=\"{}-title\">{}</title>\n<desc "
+  const std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} "
+      "{}\" role=\"img\" "
+      "aria-labelledby=\"{}-title {}-description\">\n<title "
+      "id=\"{}-title\">{}</title>\n<desc "
       "id=\"{}-description\">{}</desc>\n"
       "{}{}</svg>\n",
       pixels(kWidth), pixels(height), figure.id, figure.id, figure.id, to_svg(plain(figure.title)), figure.id,
       to_svg(plain(figure.description)), legend.svg, body);
-  return rendered;
+  return {svg, unseen.undefined, unseen.outside};
+}
+
+void write_svg(const std::filesystem::path& file, const Figure& figure) {
+  std::string svg = render_svg(figure).svg;
+  svg.insert(svg.find('>') + 1,
+             "\n<style><![CDATA[" +
+                 with_plain_colours(page_style() + std::string("svg { background: var(--ground); }")) + "]]></style>");
+  write_durably(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg);
 }
 
 }  // namespace grainlaw::app::report

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "app/report/page.hpp"
 #include "app/report/report_input.hpp"
+#include "app/report/table.hpp"
 
 namespace grainlaw::app::report {
 
@@ -42,9 +42,6 @@ Table cost_table(const ReportInput& input);
 /// Commands, versions and digests, and which files say so.
 Table provenance_table(const ReportInput& input);
 Table spec_table(const ReportInput& input);
-
-/// The value of an estimate with its error, or its status in words.
-std::string estimate_text(const Estimate& estimate);
 
 /// Fixed-width text of parameter_comparison's first columns, for a terminal.
 std::string parameter_summary(const CalibratedLaw& law);

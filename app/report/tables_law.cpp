@@ -1,32 +1,46 @@
-#include "app/report/tables.hpp"
+// The law: parameters, curves and what they say, ours beside what Imole et al. (2013) published.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <string_view>
-#include <vector>
 
-#include "app/report/table_cells.hpp"
-#include "model/density_curves.hpp"
+#include "app/report/series.hpp"
+#include "app/report/tables.hpp"
 
 namespace grainlaw::app::report {
 namespace {
 
-std::string status_words(Status status) {
-  switch (status) {
-    case Status::fitted:
-      return "fitted";
-    case Status::fixed:
-      return "fixed";
-    case Status::tied:
-      return "tied";
-    case Status::at_bound:
-      return "at bound";
-    case Status::not_identified:
-      break;
-  }
-  return "not identified";
+using enum Content;
+using fit::Claim, fit::Verdict;
+
+struct Parameter {
+  const ParameterInfo& info;
+  const Estimate& estimate;
+
+  bool is_known() const { return estimate.status != Status::not_identified; }
+  double published() const { return info.published.value_or(kUndefined); }
+};
+
+std::vector<Parameter> parameters_of(const CalibratedLaw& law) {
+  std::vector<Parameter> parameters;
+  for (std::size_t i = 0; i < kParameterCount; ++i) parameters.push_back({parameter_table()[i], law.estimates[i]});
+  return parameters;
+}
+
+/// "8.27 ± 0.31", "0.6653 (fixed)", "not identified".
+Cell estimate_cell(const Parameter& parameter) {
+  const Estimate& estimate = parameter.estimate;
+  std::string status = to_string(estimate.status);
+  std::replace(status.begin(), status.end(), '_', ' ');
+  if (!parameter.is_known()) return status;
+  const Cell value = measured(estimate.value, estimate.standard_error);
+  return estimate.status == Status::fitted ? value : Cell(to_plain(value.text) + " (" + status + ")", value.value);
+}
+
+std::string interval_of(const Parameter& parameter) {
+  return interval_text(parameter.estimate.value, parameter.estimate.half_width());
 }
 
 /// "14" as it is, a formula with its symbols.
@@ -34,78 +48,134 @@ Text equation_text(const std::string& equation) {
   return equation.find_first_not_of("0123456789") == std::string::npos ? plain(equation) : paper_symbol(equation);
 }
 
-}  // namespace
-
-std::string estimate_text(const Estimate& estimate) {
-  if (estimate.status == Status::not_identified) return "not identified";
-  const std::string value = with_error(estimate.value, estimate.standard_error);
-  if (estimate.status == Status::fitted) return value;
-  return value + " (" + status_words(estimate.status) + ")";
+/// The paper's symbol of a parameter or curve; its name where there is none.
+Text symbol_of(const Verdict& v) {
+  if (v.is_parameter) return paper_symbol(parameter_table()[parameter_index(v.quantity)].symbol);
+  for (const DensityCurve& curve : density_curves()) {
+    if (curve.quantity == v.quantity) return notation(curve.symbol);
+  }
+  return plain(v.quantity);
 }
 
+/// How many verdicts or claims say `verdict`.
+template <class Judged>
+std::ptrdiff_t count(const std::vector<Judged>& all, const char* verdict) {
+  return std::count_if(all.begin(), all.end(), [&](const Judged& judged) { return judged.verdict == verdict; });
+}
+
+/// A mode's jamming densities; both are there.
+struct Jamming {
+  const char* mode;
+  const Verdict *of_coordination, *of_pressure;
+};
+
+}  // namespace
+
 Table parameter_comparison(const CalibratedLaw& law) {
-  Table table;
-  table.caption = "Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)";
-  table.source = "parameters.json";
-  table.columns = {words(plain("parameter")),
-                   symbol(plain("symbol")),
-                   symbol(plain("Eq.")),
-                   quantity(plain("ours ± standard error")),
-                   quantity(plain("95 % interval")),
-                   quantity(plain("published")),
-                   quantity(plain("difference")),
-                   words(plain("note"))};
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const ParameterInfo& info = parameter_table()[i];
-    const Estimate& estimate = law.estimates[i];
-    const bool known = estimate.status != Status::not_identified;
-    const double published = info.published.value_or(kUndefined);
-    table.rows.push_back(
-        {plain(info.name), paper_symbol(info.symbol), equation_text(info.equation), plain(estimate_text(estimate)),
-         plain(interval_text(estimate.value, estimate.half_width())), number(published, 5),
-         plain(percent_difference(known ? estimate.value : kUndefined, published)), plain(estimate.note)});
-  }
-  return table;
+  const auto difference = [](const Parameter& p) {
+    return percent_difference(p.is_known() ? p.estimate.value : kUndefined, p.published());
+  };
+  return table_of("Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)", "parameters.json",
+                  parameters_of(law),
+                  {{"parameter", words, [](auto& p) { return p.info.name; }},
+                   {"symbol", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
+                   {"Eq.", symbol, [](auto& p) { return equation_text(p.info.equation); }},
+                   {"ours ± standard error", number, estimate_cell},
+                   {"95 % interval", number, interval_of},
+                   {"published", number, [](auto& p) { return digits(p.published(), 5); }},
+                   {"difference", number, difference},
+                   {"note", words, [](auto& p) { return p.estimate.note; }}});
 }
 
 Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
-  const auto shown = [&](const DensityCurve& curve) {
-    return std::string_view(curve.quantity).starts_with("steady_") == (which == CurveGroup::steady_state);
-  };
-  Table table;
-  table.caption = which == CurveGroup::law
+  const LawParameters<double>&ours = law.parameters, published = published_parameters();
+  std::vector<ColumnOf<double>> columns{{"{ν}", number, [](double nu) { return decimals(nu, 2); }}};
+  for (const DensityCurve& shown : density_curves()) {
+    if (std::string_view(shown.quantity).starts_with("steady_") != (which == CurveGroup::steady_state)) continue;
+    const bool known = is_known(shown, law);
+    columns.push_back({shown.symbol, number, [&, known](double nu) -> Cell {
+                         if (!known) return "not identified";
+                         const double value = shown.of(ours, nu);
+                         const std::string difference = percent_difference(value, shown.of(published, nu));
+                         return {significant_padded(value, 4) + " (" + difference + ")", value};
+                       }});
+  }
+  std::vector<double> densities;
+  for (const CurvePoint& point : curve_points(ours, published, law.range.nu_min, law.range.nu_max)) {
+    if (point.curve == &density_curves().front()) densities.push_back(point.nu);
+  }
+  return table_of(which == CurveGroup::law
                       ? "The law's curves: ours, and the difference from the published curve in brackets"
-                      : "Steady state of shear (not read by the law), likewise";
-  table.source = "parameters.json";
-  table.columns = {quantity(notation("{ν}"))};
-  std::map<double, std::vector<Text>> rows;
-  for (const CurvePoint& point :
-       curve_points(law.parameters, published_parameters(), law.range.nu_min, law.range.nu_max)) {
-    if (!shown(*point.curve)) continue;
-    const bool known = has_values(law, *point.curve);
-    std::vector<Text>& row = rows[point.nu];
-    if (row.empty()) row.push_back(plain(fixed(point.nu, 2)));
-    row.push_back(
-        plain(known ? significant_padded(point.ours, 4) + " (" + percent_difference(point.ours, point.published) + ")"
-                    : "not identified"));
+                      : "Steady state of shear (not read by the law), likewise",
+                  "parameters.json", densities, columns);
+}
+
+Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameters) {
+  std::vector<Verdict> shown;
+  std::copy_if(verdicts.begin(), verdicts.end(), std::back_inserter(shown),
+               [&](const Verdict& v) { return v.is_parameter == of_parameters; });
+  std::vector<ColumnOf<Verdict>> columns{
+      {"mode", words, &Verdict::mode},
+      {"quantity", words, &Verdict::quantity},
+      {"symbol", symbol, symbol_of},
+      {"{ν}", number, [](auto& v) { return decimals(v.nu, 2); }},
+      {"ours ± standard error", number, [](auto& v) { return measured(v.ours, v.standard_error); }},
+      {"published", number, [](auto& v) { return digits(v.published); }},
+      {"distance", number, [](auto& v) { return decimals(v.distance, 1); }},
+      {"verdict", words, &Verdict::verdict}};
+  if (of_parameters) columns.erase(columns.begin() + 3);
+  return table_of(fmt::format("{} against the published: {} agree, {} differ, {} have no error. Distance: difference "
+                              "over the standard error of a difference between our mean and one other packing",
+                              of_parameters ? "Parameters of Tables 2 and 3" : "Curves over density",
+                              count(shown, "agrees"), count(shown, "differs"), count(shown, "no error")),
+                  "calibration.json", shown, columns);
+}
+
+Table claim_table(const std::vector<fit::Claim>& claims) {
+  return table_of(
+      fmt::format("What the paper says beyond Tables 2 and 3: {} agree, {} differ, {} are undecided. Without a "
+                  "published value the sign is said: ours above zero",
+                  count(claims, "agrees"), count(claims, "differs"), count(claims, "undecided")),
+      "calibration.json", claims,
+      {{"where", words, &Claim::where},
+       {"what", words, &Claim::statement},
+       {"{ν}", number, [](auto& c) { return std::isnan(c.nu) ? "" : decimals(c.nu, 3); }},
+       {"ours ± standard error", number, [](auto& c) { return measured(c.ours, c.standard_error); }},
+       {"published", number, [](auto& c) { return std::isnan(c.published) ? "> 0" : digits(c.published); }},
+       {"verdict", words, &Claim::verdict}});
+}
+
+Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
+  std::vector<Jamming> modes;
+  for (const char* mode : {"ISO", "UNI", "D2", "D3"}) {
+    const auto verdict_on = [&](const char* parameter) -> const Verdict* {
+      const auto at = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
+        return v.is_parameter && v.mode == mode && v.quantity.ends_with(parameter);
+      });
+      return at == verdicts.end() ? nullptr : &*at;
+    };
+    const Jamming jamming{mode, verdict_on("coordination.nu_c"), verdict_on("pressure.nu_c")};
+    if (jamming.of_coordination != nullptr && jamming.of_pressure != nullptr) modes.push_back(jamming);
   }
-  for (const DensityCurve& curve : density_curves()) {
-    if (shown(curve)) table.columns.push_back(quantity(notation(curve.symbol)));
-  }
-  for (auto& [nu, row] : rows) table.rows.push_back(std::move(row));
-  return table;
+  const auto ours = [](const Verdict& v) { return measured(v.ours, v.standard_error); };
+  return table_of(
+      "Jamming densities by mode, from the coordination number (Eq. 11) and from the pressure (Eq. 14): the paper "
+      "finds ISO > UNI > D2 = D3",
+      "calibration.json", modes,
+      {{"mode", words, &Jamming::mode},
+       {"{ν}_{c} of {C}*", number, [=](auto& jamming) { return ours(*jamming.of_coordination); }},
+       {"published", number, [](auto& jamming) { return digits(jamming.of_coordination->published); }},
+       {"{ν}_{c} of {P}*", number, [=](auto& jamming) { return ours(*jamming.of_pressure); }},
+       {"published", number, [](auto& jamming) { return digits(jamming.of_pressure->published); }}});
 }
 
 std::string parameter_summary(const CalibratedLaw& law) {
   std::string text = fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", "parameter", "symbol", "ours ± standard error",
                                  "95 % interval", "published");
   text += std::string(104, '-') + "\n";
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    const ParameterInfo& info = parameter_table()[i];
-    const std::string published = info.published ? significant(*info.published, 5) : kNoNumber;
-    const Estimate& estimate = law.estimates[i];
-    text += fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", info.name, info.symbol, estimate_text(estimate),
-                        interval_text(estimate.value, estimate.half_width()), published);
+  for (const Parameter& p : parameters_of(law)) {
+    text += fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", p.info.name, p.info.symbol,
+                        to_plain(estimate_cell(p).text), interval_of(p), significant(p.published(), 5));
   }
   return text;
 }

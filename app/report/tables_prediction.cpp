@@ -1,94 +1,82 @@
-#include "app/report/tables.hpp"
+// Predictions against DEM, and what their integration took.
 
 #include <algorithm>
 
-#include "app/report/table_cells.hpp"
+#include "app/report/tables.hpp"
 
 namespace grainlaw::app::report {
-Table prediction_summary(const std::vector<predict::PredictionFolder>& predictions) {
-  Table table;
-  table.caption = "Prediction minus DEM, mean over seeds: bias, and RMS over max|DEM|";
-  table.source = "predictions/*/comparison.json";
-  table.columns = {words(plain("path")),
-                   words(plain("model")),
-                   words(plain("start")),
-                   quantity(notation("{P}* bias")),
-                   quantity(notation("{P}* RMS [%]")),
-                   quantity(notation("{s}_{∥} bias")),
-                   quantity(notation("{s}_{∥} RMS [%]")),
-                   quantity(notation("{F}_{∥} bias")),
-                   quantity(notation("{F}_{∥} RMS [%]"))};
-  for (const predict::PredictionFolder& prediction : predictions) {
-    for (const predict::CurveComparison& entry : prediction.comparisons) {
-      if (entry.seed) continue;
-      std::vector<Text> row{plain(prediction.name), plain(to_string(entry.model)), plain(to_string(entry.initial))};
-      for (const char* name : {"P_star", "s_par", "F_par"}) {
-        const auto& all = entry.comparison.quantities;
-        const auto found = std::find_if(all.begin(), all.end(), [&](const auto& q) { return q.quantity == name; });
-        row.push_back(plain(found == all.end() ? kNoNumber : significant_padded(found->bias, 2)));
-        row.push_back(plain(found == all.end() ? kNoNumber : fixed(100 * found->normalised_rms, 1)));
-      }
-      table.rows.push_back(std::move(row));
-    }
-  }
-  return table;
+namespace {
+
+using enum Content;
+using predict::CurveComparison, predict::PredictionFolder;
+
+Cell seed_or(const std::optional<std::uint64_t>& seed, const char* words) { return seed ? Cell(*seed) : Cell(words); }
+
+/// What `cell` reads of the quantity `name`; no number where the comparison lacks it.
+template <class OfQuantity>
+auto of_quantity(const char* name, const OfQuantity& cell) {
+  return [=](const Within<PredictionFolder, CurveComparison>& entry) -> Cell {
+    const auto& all = entry.it.comparison.quantities;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& q) { return q.quantity == name; });
+    return found == all.end() ? kNoNumber : cell(*found);
+  };
 }
 
-Table prediction_table(const predict::PredictionFolder& prediction) {
-  Table table;
-  table.caption = prediction.name + ": prediction minus DEM, run by run";
-  table.source = "predictions/" + prediction.name + "/comparison.json";
-  table.columns = {words(plain("model")),
-                   words(plain("start")),
-                   quantity(plain("DEM seed")),
-                   words(plain("quantity")),
-                   quantity(plain("rows")),
-                   quantity(plain("bias")),
-                   quantity(plain("RMS")),
-                   quantity(plain("RMS/max|DEM| [%]")),
-                   quantity(plain("largest")),
-                   quantity(notation("at {ε}_{dev}")),
-                   quantity(notation("at {ν}")),
-                   quantity(plain("in band of the mean [%]")),
-                   quantity(plain("of a single run [%]"))};
-  for (const predict::CurveComparison& entry : prediction.comparisons) {
-    for (const predict::QuantityComparison& q : entry.comparison.quantities) {
-      table.rows.push_back({plain(to_string(entry.model)), plain(to_string(entry.initial)),
-                            plain(entry.seed ? std::to_string(*entry.seed) : "mean"), plain(q.quantity),
-                            plain(std::to_string(q.rows)), number(q.bias, 3), number(q.rms, 3),
-                            plain(fixed(100 * q.normalised_rms, 2)), number(q.largest, 3),
-                            number(q.largest_at_eps_dev, 3), plain(fixed(q.largest_at_nu, 3)),
-                            plain(fixed(100 * q.coverage_mean, 0)), plain(fixed(100 * q.coverage_single, 0))});
-    }
-  }
-  return table;
+}  // namespace
+
+Table prediction_summary(const std::vector<PredictionFolder>& predictions) {
+  const auto bias = [](const predict::QuantityComparison& q) { return Cell(significant_padded(q.bias, 2), q.bias); };
+  const auto rms = [](const predict::QuantityComparison& q) { return decimals(100 * q.normalised_rms, 1); };
+  const auto is_mean = [](auto& entry) { return !entry.it.seed; };
+  return table_of("Prediction minus DEM, mean over seeds: bias, and RMS over max|DEM|", "predictions/*/comparison.json",
+                  each_within(predictions, &PredictionFolder::comparisons, is_mean),
+                  {{"path", words, [](auto& entry) { return entry.in.name; }},
+                   {"model", words, [](auto& entry) { return to_string(entry.it.model); }},
+                   {"start", words, [](auto& entry) { return to_string(entry.it.initial); }},
+                   {"{P}* bias", number, of_quantity("P_star", bias)},
+                   {"{P}* RMS [%]", number, of_quantity("P_star", rms)},
+                   {"{s}_{∥} bias", number, of_quantity("s_par", bias)},
+                   {"{s}_{∥} RMS [%]", number, of_quantity("s_par", rms)},
+                   {"{F}_{∥} bias", number, of_quantity("F_par", bias)},
+                   {"{F}_{∥} RMS [%]", number, of_quantity("F_par", rms)}});
 }
 
-Table solver_table(const std::vector<predict::PredictionFolder>& predictions) {
-  Table table;
-  table.caption = "What the integration of the law took";
-  table.source = "predictions/*/prediction.json";
-  table.columns = {words(plain("path")),
-                   words(plain("model")),
-                   words(plain("start")),
-                   quantity(plain("DEM seed")),
-                   quantity(plain("rows")),
-                   quantity(plain("steps")),
-                   quantity(plain("right-hand sides")),
-                   quantity(plain("failed error tests")),
-                   quantity(plain("restarts")),
-                   quantity(plain("seconds"))};
-  for (const predict::PredictionFolder& prediction : predictions) {
-    for (const predict::PredictedCurve& drawn : prediction.curves) {
-      const predict::SolverStatistics& s = drawn.prediction.statistics;
-      table.rows.push_back({plain(prediction.name), plain(to_string(drawn.model)), plain(to_string(drawn.initial)),
-                            plain(drawn.seed ? std::to_string(*drawn.seed) : kNoNumber),
-                            plain(std::to_string(drawn.prediction.rows.size())), plain(std::to_string(s.steps)),
-                            plain(std::to_string(s.rhs_evaluations)), plain(std::to_string(s.error_test_failures)),
-                            plain(std::to_string(s.restarts)), number(s.seconds, 2)});
-    }
-  }
-  return table;
+Table prediction_table(const PredictionFolder& prediction) {
+  const auto quantities = each_within(
+      prediction.comparisons, [](const CurveComparison& entry) -> auto& { return entry.comparison.quantities; });
+  return table_of(prediction.name + ": prediction minus DEM, run by run",
+                  "predictions/" + prediction.name + "/comparison.json", quantities,
+                  {{"model", words, [](auto& q) { return to_string(q.in.model); }},
+                   {"start", words, [](auto& q) { return to_string(q.in.initial); }},
+                   {"DEM seed", number, [](auto& q) { return seed_or(q.in.seed, "mean"); }},
+                   {"quantity", words, [](auto& q) { return q.it.quantity; }},
+                   {"rows", number, [](auto& q) { return q.it.rows; }},
+                   {"bias", number, [](auto& q) { return digits(q.it.bias, 3); }},
+                   {"RMS", number, [](auto& q) { return digits(q.it.rms, 3); }},
+                   {"RMS/max|DEM| [%]", number, [](auto& q) { return decimals(100 * q.it.normalised_rms, 2); }},
+                   {"largest", number, [](auto& q) { return digits(q.it.largest, 3); }},
+                   {"at {ε}_{dev}", number, [](auto& q) { return digits(q.it.largest_at_eps_dev, 3); }},
+                   {"at {ν}", number, [](auto& q) { return decimals(q.it.largest_at_nu, 3); }},
+                   {"in band of the mean [%]", number, [](auto& q) { return decimals(100 * q.it.coverage_mean, 0); }},
+                   {"of a single run [%]", number, [](auto& q) { return decimals(100 * q.it.coverage_single, 0); }}});
+}
+
+Table solver_table(const std::vector<PredictionFolder>& predictions) {
+  const auto curves = each_within(predictions, &PredictionFolder::curves);
+  const auto statistics = [](const auto& curve) -> const predict::SolverStatistics& {
+    return curve.it.prediction.statistics;
+  };
+  return table_of("What the integration of the law took", "predictions/*/prediction.json", curves,
+                  {{"path", words, [](auto& curve) { return curve.in.name; }},
+                   {"model", words, [](auto& curve) { return to_string(curve.it.model); }},
+                   {"start", words, [](auto& curve) { return to_string(curve.it.initial); }},
+                   {"DEM seed", number, [](auto& curve) { return seed_or(curve.it.seed, kNoNumber); }},
+                   {"rows", number, [](auto& curve) { return curve.it.prediction.rows.size(); }},
+                   {"steps", number, [=](auto& curve) { return statistics(curve).steps; }},
+                   {"right-hand sides", number, [=](auto& curve) { return statistics(curve).rhs_evaluations; }},
+                   {"failed error tests", number, [=](auto& curve) { return statistics(curve).error_test_failures; }},
+                   {"restarts", number, [=](auto& curve) { return statistics(curve).restarts; }},
+                   {"seconds", number, [=](auto& curve) { return digits(statistics(curve).seconds, 2); }}});
 }
 
 }  // namespace grainlaw::app::report

@@ -1,122 +1,128 @@
-#include "app/report/tables.hpp"
+// The DEM runs: how exact they were, what they cost, where everything comes from.
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
-#include <vector>
 
-#include "app/report/dem_series.hpp"
-#include "app/report/table_cells.hpp"
+#include "app/report/series.hpp"
+#include "app/report/tables.hpp"
 
 namespace grainlaw::app::report {
 namespace {
 
-/// Largest defined value of `of` over the rows of `test`; NaN when there is none.
+using enum Content;
+
+/// Defined values of `of` over the rows of `test`.
 template <class Function>
-double largest(const TestRecord& test, const Function& of) {
-  double result = kUndefined;
+std::vector<double> values(const TestRecord& test, const Function& of) {
+  std::vector<double> defined;
   for (const Observation& row : test.rows) {
-    const double value = of(row);
-    if (std::isfinite(value) && !(value <= result)) result = value;
+    if (const double value = of(row); std::isfinite(value)) defined.push_back(value);
   }
-  return result;
+  return defined;
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? kUndefined : *std::max_element(values.begin(), values.end());
+}
+
+/// The upper one of the two in the middle.
+double median(std::vector<double> values) {
+  if (values.empty()) return kUndefined;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Run {
+  const TestRecord& test;
+  const RunCost& cost;
+
+  bool is_cost_known() const { return cost.steps > 0; }
+};
+
+std::vector<Run> runs_of(const ReportInput& input) {
+  std::vector<Run> runs;
+  for (std::size_t i = 0; i < input.tests.size(); ++i) runs.push_back({input.tests[i], input.costs[i]});
+  return runs;
+}
+
+/// The runs of one data set together.
+struct RunSum {
+  std::string files;
+  std::size_t tests = 0;
+  double steps = 0, particle_steps = 0, seconds = 0;
+};
+
+RunSum sum_of(const std::string& files, const std::vector<Run>& runs) {
+  RunSum sum{files, runs.size()};
+  for (const Run& run : runs) {
+    const double steps = static_cast<double>(run.cost.steps);
+    sum.steps += steps;
+    sum.particle_steps += steps * static_cast<double>(run.test.packing.particles);
+    sum.seconds += run.cost.seconds;
+  }
+  return sum;
 }
 
 }  // namespace
 
 Table run_table(const ReportInput& input) {
-  Table table;
-  table.caption = "Runs of the data set";
-  table.source = "dataset/";
-  table.columns = {words(plain("test")),
-                   words(plain("role")),
-                   words(plain("path")),
-                   quantity(notation("{ν} at start")),
-                   quantity(plain("seed")),
-                   quantity(notation("{N}")),
-                   quantity(plain("rows")),
-                   quantity(plain("steps")),
-                   quantity(plain("seconds")),
-                   quantity(notation("median {E}_{kin}/{E}_{pot}")),
-                   quantity(plain("largest |energy residual|")),
-                   quantity(notation("largest {I}"))};
-  for (std::size_t i = 0; i < input.tests.size(); ++i) {
-    const TestRecord& test = input.tests[i];
-    const RunCost& cost = input.costs[i];
-    const bool known = cost.steps > 0;
-    std::vector<double> ratios;
-    for (const Observation& row : test.rows) {
-      const double ratio = row.E_kin / row.E_pot;
-      if (std::isfinite(ratio)) ratios.push_back(ratio);
-    }
-    double median = kUndefined;
-    if (!ratios.empty()) {
-      const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-      std::nth_element(ratios.begin(), middle, ratios.end());
-      median = *middle;
-    }
-    table.rows.push_back(
-        {plain(test.name), plain(to_string(test.role)), plain(kind_of(test.path)), plain(fixed(test.path.nu, 3)),
-         plain(std::to_string(test.packing.seed)), plain(std::to_string(test.packing.particles)),
-         plain(std::to_string(test.rows.size())), plain(known ? std::to_string(cost.steps) : kNoNumber),
-         plain(known ? significant(cost.seconds, 3) : kNoNumber), number(median, 2),
-         number(largest(test, [](const Observation& row) { return std::abs(row.energy_residual); }), 2),
-         number(largest(test, [](const Observation& row) { return row.inertial_number; }), 2)});
-  }
-  return table;
+  const auto energy_ratio = [](const Observation& row) { return row.E_kin / row.E_pot; };
+  const auto energy_error = [](const Observation& row) { return std::abs(row.energy_residual); };
+  const auto inertial_number = [](const Observation& row) { return row.inertial_number; };
+  const auto if_known = [](const Run& run, const Cell& cell) { return run.is_cost_known() ? cell : kNoNumber; };
+  return table_of(
+      "Runs of the data set", "dataset/", runs_of(input),
+      {{"test", words, [](auto& run) { return run.test.name; }},
+       {"role", words, [](auto& run) { return to_string(run.test.role); }},
+       {"path", words, [](auto& run) { return kind_of(run.test.path); }},
+       {"{ν} at start", number, [](auto& run) { return decimals(run.test.path.nu, 3); }},
+       {"seed", number, [](auto& run) { return run.test.packing.seed; }},
+       {"{N}", number, [](auto& run) { return run.test.packing.particles; }},
+       {"rows", number, [](auto& run) { return run.test.rows.size(); }},
+       {"steps", number, [=](auto& run) { return if_known(run, run.cost.steps); }},
+       {"seconds", number, [=](auto& run) { return if_known(run, digits(run.cost.seconds, 3)); }},
+       {"median {E}_{kin}/{E}_{pot}", number,
+        [=](auto& run) { return digits(median(values(run.test, energy_ratio)), 2); }},
+       {"largest |energy residual|", number,
+        [=](auto& run) { return digits(largest(values(run.test, energy_error)), 2); }},
+       {"largest {I}", number, [=](auto& run) { return digits(largest(values(run.test, inertial_number)), 2); }}});
 }
 
 Table cost_table(const ReportInput& input) {
-  Table table;
-  table.caption = "What the DEM runs cost";
-  table.columns = {words(plain("files")), quantity(plain("tests")), quantity(plain("time steps")),
-                   quantity(plain("particle-steps")), quantity(plain("seconds, all runs together"))};
-  const auto add = [&](const std::string& files, std::size_t count, const auto& test_of, const auto& cost_of) {
-    double steps = 0, work = 0, seconds = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const RunCost& cost = cost_of(i);
-      steps += static_cast<double>(cost.steps);
-      work += static_cast<double>(cost.steps) * static_cast<double>(test_of(i).packing.particles);
-      seconds += cost.seconds;
-    }
-    table.rows.push_back({plain(files), plain(std::to_string(count)), number(steps), number(work), number(seconds)});
-  };
-  add(
-      "dataset/", input.tests.size(), [&](std::size_t i) -> const TestRecord& { return input.tests[i]; },
-      [&](std::size_t i) -> const RunCost& { return input.costs[i]; });
+  std::vector<RunSum> sums{sum_of("dataset/", runs_of(input))};
   for (const predict::PredictionFolder& prediction : input.predictions) {
     if (!prediction.dem) continue;
-    const auto& tests = prediction.dem->tests;
-    add(
-        "predictions/" + prediction.name + "/dem/", tests.size(),
-        [&](std::size_t i) -> const TestRecord& { return tests[i].record; },
-        [&](std::size_t i) -> const RunCost& { return tests[i].cost; });
+    std::vector<Run> runs;
+    for (const DatasetTest& test : prediction.dem->tests) runs.push_back({test.record, test.cost});
+    sums.push_back(sum_of("predictions/" + prediction.name + "/dem/", runs));
   }
-  return table;
+  return table_of("What the DEM runs cost", "", sums,
+                  {{"files", words, &RunSum::files},
+                   {"tests", number, &RunSum::tests},
+                   {"time steps", number, [](auto& sum) { return digits(sum.steps); }},
+                   {"particle-steps", number, [](auto& sum) { return digits(sum.particle_steps); }},
+                   {"seconds, all runs together", number, [](auto& sum) { return digits(sum.seconds); }}});
 }
 
 Table provenance_table(const ReportInput& input) {
-  Table table;
-  table.caption = "Where this comes from";
-  table.columns = {words(plain("what")), words(plain("value")), words(plain("said by"))};
   std::set<std::string> all;
   for (const Fact& fact : input.provenance) all.insert(fact.files.begin(), fact.files.end());
-  for (const Fact& fact : input.provenance) {
+  const auto said_by = [&](const Fact& fact) {
+    if (fact.files.size() == all.size() && all.size() > 1) return std::string("all files");
     std::string files;
     for (const std::string& file : fact.files) files += (files.empty() ? "" : ", ") + file;
-    if (fact.files.size() == all.size() && all.size() > 1) files = "all files";
-    table.rows.push_back({plain(fact.what), plain(fact.value), plain(files)});
-  }
-  return table;
+    return files;
+  };
+  return table_of("Where this comes from", "", input.provenance,
+                  {{"what", words, &Fact::what}, {"value", words, &Fact::value}, {"said by", words, said_by}});
 }
 
 Table spec_table(const ReportInput& input) {
-  Table table;
-  table.caption = "The spec with every default resolved";
-  table.source = "dataset/dataset.json";
-  table.columns = {words(plain("key")), words(plain("value"))};
-  for (const Fact& fact : input.spec) table.rows.push_back({plain(fact.what), plain(fact.value)});
-  return table;
+  return table_of("The spec with every default resolved", "dataset/dataset.json", input.spec,
+                  {{"key", words, &Fact::what}, {"value", words, &Fact::value}});
 }
 
 }  // namespace grainlaw::app::report

@@ -44,8 +44,10 @@ std::string sanitized(std::string_view text) {
 }
 
 std::string letter_of(std::string_view word) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> letters{
-      {{"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"lambda", "λ"}, {"nu", "ν"}, {"phi", "φ"}, {"sigma", "σ"}}};
+  using Letter = std::pair<std::string_view, std::string_view>;
+  static constexpr std::array letters{Letter{"alpha", "α"}, Letter{"beta", "β"},   Letter{"gamma", "γ"},
+                                      Letter{"delta", "δ"}, Letter{"lambda", "λ"}, Letter{"nu", "ν"},
+                                      Letter{"phi", "φ"},   Letter{"sigma", "σ"}};
   for (const auto& [name, letter] : letters) {
     if (word == name) return std::string(letter);
   }
@@ -107,27 +109,16 @@ Text operator+(Text left, const Text& right) {
 }
 
 std::string escape_markup(std::string_view text) {
+  static constexpr std::string_view characters = "&<>\"'";
+  static constexpr std::array entities{"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
   std::string out;
   out.reserve(text.size());
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
+    const std::size_t at = characters.find(c);
+    if (at == std::string_view::npos) {
+      out += c;
+    } else {
+      out += entities[at];
     }
   }
   return out;
@@ -137,20 +128,11 @@ std::string to_html(const Text& text) {
   std::string out;
   for (const TextRun& run : text.runs) {
     const std::string content = escape_markup(run.text);
-    switch (run.style) {
-      case Style::upright:
-        out += content;
-        break;
-      case Style::italic:
-        out += "<i>" + content + "</i>";
-        break;
-      case Style::subscript:
-        out += "<sub>" + content + "</sub>";
-        break;
-      case Style::superscript:
-        out += "<sup>" + content + "</sup>";
-        break;
-    }
+    const std::string tag = run.style == Style::italic        ? "i"
+                            : run.style == Style::subscript   ? "sub"
+                            : run.style == Style::superscript ? "sup"
+                                                              : "";
+    out += tag.empty() ? content : "<" + tag + ">" + content + "</" + tag + ">";
   }
   return out;
 }

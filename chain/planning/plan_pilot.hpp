@@ -5,7 +5,7 @@
 //   x_i = sum over tests of the mean over rows, of packing i;   d = mean(x at the coarser setting)/mean(x) - 1
 // with the packings paired by seed where they are the same spheres.
 // The bias of the time step is taken as the energy that steps make or lose over the work (energy_residual): a difference of runs
-// at two steps is all scatter (docs/validation.md, "Modes of driving").
+// at two steps is all scatter (docs/validation-log.md, "Modes of driving").
 
 #include <string>
 #include <vector>

@@ -6,7 +6,7 @@
 //   g^2 = v_between(e) + v_within(e)/D          D densities of shear to the strain e, variances of steady means
 //   b = slope times shape, systematic:   rate  (r/r_p)^0.6 - (r_w/r_p)^0.6,   step  (f/f_p)^2,   size  N_p/N
 // p: the pilot's, w: wanted, of the SPEC (predictions are meant for its strain rate; driving faster is a short cut). The orders
-// are measured ones, docs/validation.md, "What rate and size do". A slope is measured against a coarser setting:
+// are measured ones, docs/validation-log.md, "What rate and size do". A slope is measured against a coarser setting:
 //   slope = sqrt(max(0, d^2 - se^2))/(its shape - the pilot's),   d the relative difference of the two, se its standard error
 
 #include <array>

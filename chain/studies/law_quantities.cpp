@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "dem/runs/spec_file.hpp"
-#include "predict/parameter_step.hpp"
 #include "predict/predict.hpp"
+#include "predict/segment_sensitivity.hpp"
 
 namespace grainlaw::chain {
 namespace {

@@ -19,13 +19,11 @@
 
 namespace grainlaw::fit {
 
-inline const LawState<double> kNoState{0, Deviator<double>::Zero(), Deviator<double>::Zero()};
-
 /// Row of a trajectory.
 struct TrajectoryRow {
-  double e = 0;                      ///< path parameter since the start of the trajectory [-]
-  LawState<double> data = kNoState;  ///< measured
-  double weight = 0;                 ///< of its window, before division by the scale of a quantity
+  double e = 0;           ///< path parameter since the start of the trajectory [-]
+  LawState<double> data;  ///< measured
+  double weight = 0;      ///< of its window, before division by the scale of a quantity
 };
 
 struct Trajectory {
@@ -33,7 +31,7 @@ struct Trajectory {
   int cluster = 0;
   int segment = 0;
   bool starts_on_law = false;          ///< P by Eq. (14) at nu_start, else all of `start`
-  LawState<double> start = kNoState;   ///< measured; s_r the measured ratio at the reversal before, if any
+  LawState<double> start;              ///< measured; s_r the measured ratio at the reversal before, if any
   double nu_start = 0;                 ///< [-]
   LawDirection direction;              ///< per unit of e
   std::vector<Deviator<double>> axes;  ///< orthonormal; deviators are compared along these, the first one is N of s_par
@@ -57,12 +55,11 @@ LawState<T> combination(const LawState<T>& y, double h, const std::array<LawStat
   for (std::size_t i = 0; i < stages; ++i) {
     if (a[i] == 0) continue;
     const double c = h * a[i];  // plain: a dual number times a dual number is three times the work
-    sum.P += k[i].P * c;
-    for (Eigen::Index j = 0; j < sum.sigma.size(); ++j) {
-      sum.sigma(j) += k[i].sigma(j) * c;
-      sum.F(j) += k[i].F(j) * c;
-      sum.E(j) += k[i].E(j) * c;
-    }
+    for_each_part(
+        [c](const StatePart& part, auto& of_sum, const auto& of_k) {
+          if (part.has_rate) of_sum += of_k * c;
+        },
+        sum, k[i]);
   }
   return sum;
 }
@@ -102,8 +99,7 @@ GRAINLAW_FLATTEN LawState<T> butcher6_step(const Rate& rate, double h, const Law
 template <class T, class Visit>
 bool integrate(const Trajectory& trajectory, const LawParameters<T>& p, Rung rung, Coupling coupling, double max_step,
                const Visit& visit) {
-  LawState<T> y{T(trajectory.start.P), trajectory.start.sigma.template cast<T>(), trajectory.start.F.template cast<T>(),
-                trajectory.start.s_r.template cast<T>(), trajectory.start.E.template cast<T>()};
+  LawState<T> y = cast<T>(trajectory.start);
   if (trajectory.starts_on_law) y.P = p.isotropic.P_star(trajectory.nu_start);
   std::array<LawModuli<T>, kStepNodes.size()> moduli;
   moduli.fill(law_moduli(p, trajectory.nu_start, rung));

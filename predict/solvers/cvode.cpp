@@ -12,10 +12,7 @@
 #include <limits>
 
 #include "model/vocabulary/error.hpp"
-#include "predict/solvers/ode_callbacks.hpp"
-#include "predict/solvers/state_vector.hpp"
-#include "predict/solvers/sundials_context.hpp"
-#include "predict/solvers/sundials_handle.hpp"
+#include "predict/solvers/sundials.hpp"
 
 namespace grainlaw::predict {
 namespace {

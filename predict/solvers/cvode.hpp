@@ -4,42 +4,12 @@
 // After every call y must be finite and t exactly the requested one, otherwise the call has failed: the library is
 // known to report success with a wrong y when its step vanishes, and to loop when a root function is not a number.
 
-#include <functional>
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
-#include "predict/predict.hpp"
+#include "predict/solvers/ode.hpp"
 
 namespace grainlaw::predict {
-
-/// Writes dy/dt at (t, y). A rate that is not finite makes the solver try a smaller step. May throw.
-using OdeRate = std::function<void(double t, const double* y, double* rate)>;
-
-/// The integration ends where this falls through zero. May be empty.
-using OdeEvent = std::function<double(double t, const double* y)>;
-
-/// Writes for each unknown the magnitude at (t, y) that the relative tolerance refers to. May be empty: |y| then.
-using OdeScale = std::function<void(double t, const double* y, double* scale)>;
-
-/// Writes the rate (df/dy) s + df/dp_k at (t, y) of the sensitivity s = dy/dp_k. May throw.
-using OdeSensitivityRate = std::function<void(std::size_t k, double t, const double* y, const double* s, double* rate)>;
-
-/// dy/dp_k, carried along beside y, each to five times the relative tolerance of y (and no less than 1e-10) of
-/// itself, or of typical y over the magnitude of p_k where it is less than that.
-struct OdeSensitivities {
-  std::vector<double> magnitudes;  ///< of each p_k, positive
-  OdeSensitivityRate rate;
-  std::function<void(double* y)> typical;  ///< writes for each unknown what is typical of it, at start()
-};
-
-/// How one call of Cvode::advance ended.
-struct Arrival {
-  enum class Kind { reached, event, failed } kind = Kind::failed;
-  double t = 0;         ///< where y is: the requested t, the place of the event, or where the solver gave up
-  std::string message;  ///< the solver's own words on failure, else empty
-};
 
 class Cvode {
  public:

@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "predict/solvers/cvode.hpp"
+#include "predict/solvers/ode.hpp"
 
 namespace grainlaw::predict {
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <exception>
 #include <optional>
+#include <thread>
 
 #include "model/vocabulary/error.hpp"
 #include "predict/segment_law.hpp"
@@ -63,13 +66,8 @@ struct Walker::Impl {
     const LawDirection direction = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
     turn_corner(rung, state, direction);
     for (long i = 0; i < n; ++i) {
-      const LawState<double> rate =
-          law_rate(parameters, rung, coupling, state, segment.nu(h * static_cast<double>(i)), direction);
-      state.P += h * rate.P;
-      state.sigma += h * rate.sigma;
-      state.F += h * rate.F;
-      state.s_r += h * rate.s_r;
-      state.E += h * rate.E;
+      const double nu = segment.nu(h * static_cast<double>(i));
+      state = moved(state, h, law_rate(parameters, rung, coupling, state, nu, direction));
     }
     return n;
   }
@@ -139,6 +137,36 @@ Walk Walker::walk(const std::vector<StraightSegment>& segments, const LawState<d
   walk.rhs_evaluations += self.rhs_evaluations() - evaluations;
   walk.steps += self.steps() - steps;
   return walk;
+}
+
+std::vector<LawState<double>> walk_batch(const std::vector<BatchPath>& paths, Integrator integrator, double accuracy,
+                                         const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                                         int threads, const RunControl& control) {
+  std::vector<LawState<double>> ends(paths.size());
+  const std::size_t teams = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(threads, 1)), 1,
+                                                    std::max<std::size_t>(paths.size(), 1));
+  std::vector<std::exception_ptr> failures(teams);
+  const auto work = [&](std::size_t team) {
+    try {
+      Walker walker(integrator, accuracy, parameters, rung, coupling);
+      const std::size_t end = paths.size() * (team + 1) / teams;
+      for (std::size_t i = paths.size() * team / teams; i < end; ++i) {
+        if (control.stop.stop_requested()) throw Interrupted("the batch was interrupted");
+        ends[i] = walker.walk(paths[i].segments, paths[i].start).ends.back();
+      }
+    } catch (...) {
+      failures[team] = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t team = 1; team < teams; ++team) others.emplace_back(work, team);
+    work(0);
+  }
+  for (const std::exception_ptr& failure : failures) {
+    if (failure) std::rethrow_exception(failure);
+  }
+  return ends;
 }
 
 }  // namespace grainlaw::predict

@@ -1,6 +1,6 @@
 #pragma once
 // One strain-controlled path by one of several integrators, without outputs on the way: what a user material needs, what
-// batches run, and what the study of work against precision compares. Set up once, walked many times.
+// the study of work against precision compares. Set up once, walked many times; and batches of such paths over the cores.
 
 #include <memory>
 #include <vector>
@@ -8,6 +8,7 @@
 #include "model/law.hpp"
 #include "model/vocabulary/enum_names.hpp"
 #include "model/vocabulary/path.hpp"
+#include "model/vocabulary/run_control.hpp"
 
 namespace grainlaw::predict {
 
@@ -42,5 +43,17 @@ class Walker {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// One of many independent paths.
+struct BatchPath {
+  std::vector<StraightSegment> segments;
+  LawState<double> start;  ///< jammed
+};
+
+/// State at the end of each path, in their order. Every path is walked by itself, so the results do not depend on `threads`. `integrator` and `accuracy` as for Walker. Throws what the first
+/// failing path of a thread throws, and Interrupted.
+std::vector<LawState<double>> walk_batch(const std::vector<BatchPath>& paths, Integrator integrator, double accuracy,
+                                         const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                                         int threads, const RunControl& control);
 
 }  // namespace grainlaw::predict

@@ -2,7 +2,7 @@
 // correlated from row to row, and packings that differ as a whole. Pass lines 93-97 % for white noise and 90 % otherwise. Of five
 // white packings 2000: by the first 1000 chi was covered by 92.8 %, by the others 95.2 %; 1000 leave the least of 41 to chance.
 // By Huber's loss (F7) 300 sets of packings that differ, by the same line, which it does not meet: its intervals of kappa and lambda
-// hold 88 and 86 % (docs/validation.md).
+// hold 88 and 86 % (docs/validation-log.md).
 
 #include <gtest/gtest.h>
 

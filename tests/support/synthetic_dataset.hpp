@@ -81,7 +81,7 @@ class SyntheticDataset {
     const StraightSegment segment = resolve(record.path).front();
     for (int i = 0; i <= options_.rows; ++i) {
       const double e = segment.length * i / options_.rows, nu = segment.nu(e);
-      LawState<double> y{law_.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
+      LawState<double> y{.P = law_.isotropic.P_star(nu)};
       record.rows.push_back(row(record, segment, 0, e, y, law_.isotropic, noise, i > 0));
     }
     return record;
@@ -93,7 +93,7 @@ class SyntheticDataset {
     Noise noise(std::hash<std::string>{}(name), options_.noise_correlation);
     const double factor = 1 + options_.seed_scatter * noise.normal();
     const std::vector<StraightSegment> path = resolve(record.path);
-    LawState<double> y{law_.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
+    LawState<double> y{.P = law_.isotropic.P_star(nu)};
     for (std::size_t k = 0; k < path.size(); ++k) {
       const StraightSegment& segment = path[k];
       const double jump = law_.steady.P_star(segment.nu_start) / y.P - 1;  // to the steady pressure
@@ -154,26 +154,18 @@ class SyntheticDataset {
   }
 
   void advance(const StraightSegment& segment, double from, double to, LawState<double>& y) const {
-    using Vector = std::array<double, 16>;
+    using Vector = std::array<double, kStateSize>;
     const LawDirection direction = law_direction(segment.direction);
-    const auto pack = [](const LawState<double>& s) {
-      Vector v{s.P};
-      for (int i = 0; i < 5; ++i) {
-        v[static_cast<std::size_t>(1 + i)] = s.sigma(i);
-        v[static_cast<std::size_t>(6 + i)] = s.F(i);
-        v[static_cast<std::size_t>(11 + i)] = s.E(i);
-      }
+    const auto pack = [](const LawState<double>& state) {
+      Vector v;
+      Eigen::Map<StateVector<double>> numbers(v.data());
+      numbers = as_vector(state);
       return v;
     };
     const auto unpack = [](const Vector& v) {
-      LawState<double> s;
-      s.P = v[0];
-      for (int i = 0; i < 5; ++i) {
-        s.sigma(i) = v[static_cast<std::size_t>(1 + i)];
-        s.F(i) = v[static_cast<std::size_t>(6 + i)];
-        s.E(i) = v[static_cast<std::size_t>(11 + i)];
-      }
-      return s;
+      LawState<double> state;
+      as_vector(state) = Eigen::Map<const StateVector<double>>(v.data());
+      return state;
     };
     Vector v = pack(y);
     boost::numeric::odeint::bulirsch_stoer<Vector> stepper(1e-15, 1e-13);

@@ -142,8 +142,8 @@ TEST(ReportFigure, HostileLabelsAndNamesStayText) {
   Table table{hostile, {{plain(hostile)}}, {{plain(hostile)}}, hostile};
   Page page;
   page.title = hostile;
-  page.lead = {paragraph_html(plain(hostile))};
-  page.sections = {{"s", hostile, {figure_html(figure), table_html(table)}}};
+  page.lead = {{{Paragraph{plain(hostile)}, Warning{hostile, "s", hostile}}}};
+  page.sections = {{"s", hostile, {{{figure, table}, hostile}, {{Items{{hostile}}}}}}};
   const std::string html = page_html(page);
   EXPECT_EQ(test::first_markup_error(html), "");
   EXPECT_EQ(count(html, "<script>"), 0);

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/report/dem_series.hpp"
 #include "app/report/report_input.hpp"
+#include "app/report/series.hpp"
 #include "fit/calibration_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output_folder.hpp"

@@ -7,7 +7,6 @@
 
 #include "model/files/schema.hpp"
 #include "app/report/svg_figure.hpp"
-#include "app/report/svg_file.hpp"
 #include "app/report/figure_study.hpp"
 #include "chain/studies/study_json.hpp"
 #include "app/commands/study_table.hpp"

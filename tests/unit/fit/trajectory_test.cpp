@@ -17,7 +17,7 @@ Trajectory shear_at(double nu, const LawParameters<double>& p, double strain, in
   t.nu_start = nu;
   t.start = {p.isotropic.P_star(nu), Deviator<double>::Zero(), Deviator<double>::Zero()};
   t.axes = {t.direction.N};
-  for (int i = 1; i <= rows; ++i) t.rows.push_back({strain / t.direction.de * i / rows, kNoState, 1});
+  for (int i = 1; i <= rows; ++i) t.rows.push_back({strain / t.direction.de * i / rows, {}, 1});
   return t;
 }
 
@@ -51,7 +51,7 @@ TEST(Trajectory, IsotropicPathIsEq14) {
   t.direction = law_direction(direction_of(Mode::ISO, "xyz", true));
   t.nu_start = 0.82;
   t.starts_on_law = true;
-  for (int i = 1; i <= 50; ++i) t.rows.push_back({std::log(0.82 / 0.675) / 3 * i / 50, kNoState, 1});
+  for (int i = 1; i <= 50; ++i) t.rows.push_back({std::log(0.82 / 0.675) / 3 * i / 50, {}, 1});
   ASSERT_TRUE(integrate(t, p, Rung::evolution, Coupling::energy, 2e-3, [&](std::size_t i, const LawState<double>& y) {
     const double nu = t.nu(t.rows[i].e);
     EXPECT_NEAR(y.P, p.isotropic.P_star(nu), 1e-9 * y.P) << nu;
@@ -65,7 +65,7 @@ TEST(Trajectory, SaysWhenThePressureIsGone) {
   t.direction = law_direction(direction_of(Mode::ISO, "xyz", true));
   t.nu_start = 0.70;
   t.start = {1e-4, Deviator<double>::Zero(), Deviator<double>::Zero()};  // far below Eq. (14): used up on the way
-  t.rows.push_back({0.01, kNoState, 1});
+  t.rows.push_back({0.01, {}, 1});
   EXPECT_FALSE(integrate(t, p, Rung::evolution, Coupling::energy, 2e-3, [](std::size_t, const LawState<double>&) {}));
 }
 

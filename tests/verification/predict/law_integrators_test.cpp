@@ -9,7 +9,7 @@
 #include <random>
 
 #include "model/vocabulary/error.hpp"
-#include "predict/studies/batch.hpp"
+#include "predict/studies/walker.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"

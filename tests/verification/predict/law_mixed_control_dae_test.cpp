@@ -15,7 +15,7 @@
 
 #include "predict/mixed_control.hpp"
 #include "predict/segment_law.hpp"
-#include "predict/solvers/sundials_handle.hpp"
+#include "predict/solvers/sundials.hpp"
 #include "tests/support/figure.hpp"
 
 namespace grainlaw::predict {

@@ -1,10 +1,9 @@
-#include "predict/solvers/state_vector.hpp"
+#include "predict/solvers/sundials.hpp"
 
 #include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
 
-#include <cmath>
-
-#include "predict/solvers/sundials_handle.hpp"
+#include <limits>
 
 // Of the loop after it: no element that it writes is read by another turn.
 #if defined(__clang__)
@@ -81,6 +80,14 @@ int scale_add_multi(int count, double* a, N_Vector x, N_Vector* y, N_Vector* z) 
 
 }  // namespace
 
+void free_context(SUNContext context) { SUNContext_Free(&context); }
+
+OwnedContext new_context() {
+  SUNContext context = nullptr;
+  SUNContext_Create(nullptr, &context);
+  return OwnedContext{created(context, "a context")};
+}
+
 _generic_N_Vector* new_state_vector(std::size_t size, _SUNContext* context) {
   N_Vector v = created(N_VNew_Serial(static_cast<sunindextype>(size), context), "the state vector");
   N_VConst(0, v);
@@ -90,6 +97,28 @@ _generic_N_Vector* new_state_vector(std::size_t size, _SUNContext* context) {
   v->ops->nvlinearcombination = linear_combination;
   v->ops->nvscaleaddmulti = scale_add_multi;
   return v;
+}
+
+int OdeCallbacks::evaluate_rate(double t, N_Vector y, N_Vector rate, void* user) {
+  auto& self = *static_cast<OdeCallbacks*>(user);
+  double* const out = N_VGetArrayPointer(rate);
+  std::fill_n(out, self.size, std::numeric_limits<double>::quiet_NaN());
+  return self.guarded(out, [&] { self.rate(t, N_VGetArrayPointer(y), out); });
+}
+
+int OdeCallbacks::evaluate_weights(N_Vector y, N_Vector weight, void* user) {
+  auto& self = *static_cast<OdeCallbacks*>(user);
+  double* const out = N_VGetArrayPointer(weight);
+  const int flag = self.guarded(out, [&] { self.scale(self.time(), N_VGetArrayPointer(y), out); });
+  if (flag != 0) return kGiveUp;
+  for (std::size_t i = 0; i < self.size; ++i) out[i] = 1 / (self.relative * out[i] + self.absolute);
+  return std::all_of(out, out + self.size, [](double v) { return v > 0 && std::isfinite(v); }) ? 0 : kGiveUp;
+}
+
+void OdeCallbacks::keep_message(int code, const char*, const char*, char* text, void* user) {
+  auto& self = *static_cast<OdeCallbacks*>(user);
+  self.message = text ? text : "";
+  if (code > 0) self.warned = true;
 }
 
 }  // namespace grainlaw::predict
