@@ -12,7 +12,6 @@
 #include "model/vocabulary/error.hpp"
 #include "predict/studies/walker.hpp"
 #include "predict/predict.hpp"
-#include "predict/studies/batch.hpp"
 #include "predict/studies/work_precision.hpp"
 
 namespace grainlaw::app {

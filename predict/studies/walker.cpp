@@ -10,6 +10,7 @@
 
 #include "model/vocabulary/error.hpp"
 #include "predict/segment_law.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "predict/solvers/dormand_prince.hpp"
 #include "predict/solvers/runge_kutta.hpp"
 
