@@ -178,9 +178,7 @@ ElementTest continue_element_test(Checkpoint from, const std::vector<StraightSeg
 
 void fill_path(Observation& row, const StraightSegment& segment, int index, double e, double sheared_before) {
   row.segment = index;
-  row.strain = segment.strain(e);
-  row.eps_vol = row.strain.tensor.trace();
-  row.eps_dev = deviatoric_norm(row.strain.tensor);
+  set_strain(row, segment.strain(e));
   row.shear_path = sheared_before + segment.eps_dev_rate() * e;
   // after a reversal to the start only rounding is left: it has no direction
   if (row.eps_dev > 1e-12 * (row.shear_path + std::abs(row.eps_vol))) {

@@ -89,7 +89,6 @@ Observation observe(Simulation& sim, const CellMotion& motion, const Deviator<do
   const double V = p.volume();
   const double spheres = static_cast<double>(p.size());
   const double mean_r = mean_radius(p);
-  const bool sheared = N.squaredNorm() > 0;
 
   Observation row;
   row.time = state.time;
@@ -98,17 +97,12 @@ Observation observe(Simulation& sim, const CellMotion& motion, const Deviator<do
   row.stress_kinetic.tensor = kinetic_tensor(p) / V;
   const double P = row.stress.tensor.trace() / 3;
   row.P_star = p.size() > 0 ? 2 * mean_r / material.stiffness * P : 0;
-  const Deviator<double> sigma = deviator<double>(row.stress.tensor);
-  row.s_dev = ratio(sigma.norm(), P);
-  if (sheared) row.s_par = ratio(sigma.dot(N), P);
   row.shape_stress = shape_factor(-row.stress.tensor);
   row.lode_stress = lode_angle(-row.stress.tensor);
 
   row.fabric.tensor = sums.fabric / V;
-  const Deviator<double> F = deviator<double>(row.fabric.tensor);
   row.F_v = row.fabric.tensor.trace();
-  row.F_dev = F.norm();
-  if (sheared) row.F_par = F.dot(N);
+  set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
   row.shape_fabric = shape_factor(-row.fabric.tensor);
   row.lode_fabric = lode_angle(-row.fabric.tensor);
 

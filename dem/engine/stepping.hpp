@@ -6,6 +6,8 @@
 
 #include "dem/engine/state.hpp"
 #include "dem/engine/thread_team.hpp"
+#include "model/vocabulary/enum_names.hpp"
+#include "model/vocabulary/fields.hpp"
 
 namespace grainlaw::dem {
 
@@ -16,6 +18,7 @@ enum class Precision {
   reference,  ///< double, plain loops; also taken where the others do not fit: cells less than about five spheres
               ///< wide, sheared cells, wall-driven transport
 };
+constexpr auto names_of(Precision) { return std::array{"mixed", "double", "reference"}; }
 
 struct EngineOptions {
   double time_step_fraction = 0.1;  ///< dt/t_c,min of the actual packing [-]
@@ -25,12 +28,27 @@ struct EngineOptions {
   int threads = 1;             ///< threads of one run
   bool refuse_deep_overlaps = true;  ///< of pairs that nothing holds; false to watch them part (hard case D17)
 };
+constexpr auto fields_of(std::type_identity<EngineOptions>) {
+  using E = EngineOptions;
+  return std::tuple{
+      Field{&E::time_step_fraction, "time_step_fraction", "", "dt/t_c",
+            "time step over the shortest collision time of the packing; unstable beyond 0.4"},
+      Field{&E::skin, "skin", "", "", "skin of the neighbour list over the mean radius"},
+      Field{&E::precision, "precision", "", "",
+            "arithmetic of the time steps: float forces, double, or double in plain loops"},
+      Field{&E::portable_bits, "portable_bits", "", "",
+            "the same bits also on machines without fused multiply-add (before AVX2), slowly"},
+      Field{&E::threads, "threads", "", "", "threads of one run", Rule::free},
+      Field{&E::refuse_deep_overlaps, "refuse_deep_overlaps", "", "", "of tests alone", Rule::free}};
+}
+static_assert(tells_every_member<EngineOptions>());
 
 /// What moves with the cell.
 enum class Transport {
   homogeneous,  ///< the spheres: dx/dt = v + L x
   wall,         ///< only the edges: dx/dt = v inside; a sphere that leaves re-enters with its velocity unchanged
 };
+constexpr auto names_of(Transport) { return std::array{"homogeneous", "wall"}; }
 
 /// Cell and velocity gradient at an instant.
 struct CellMotion {
