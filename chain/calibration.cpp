@@ -128,7 +128,7 @@ CalibrationInput read_calibration_input(const fs::path& spec, const fs::path& da
 fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Execution& execution) {
   fit::CalibrationOptions options;
   options.threads = execution.threads;
-  if (input.spec) options.coupling = coupling_of(input.spec->coupling);
+  if (input.spec) options.coupling = value_of<Coupling>(input.spec->coupling, "coupling");
   return options;
 }
 

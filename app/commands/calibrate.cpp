@@ -74,11 +74,11 @@ Task declare_calibrate(CLI::App& command) {
       ->needs(target)
       ->check(CLI::Range(0.0, 1e9));
   command.add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
-      ->transform(one_of<Coupling>({{"energy", Coupling::energy}, {"single", Coupling::single}}));
+      ->transform(by_name<Coupling>());
   command
       .add_option("--loss", options->loss,
                   "squares (default) or huber: rows that are far off, in units of their scatter, count for less")
-      ->transform(one_of<fit::Loss>({{"squares", fit::Loss::squares}, {"huber", fit::Loss::huber}}));
+      ->transform(by_name<fit::Loss>());
   command
       .add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
       ->check(CLI::Range(1, 10000))

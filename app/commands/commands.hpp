@@ -8,6 +8,7 @@
 
 #include "app/exit_code.hpp"
 #include "app/terminal/session.hpp"
+#include "model/vocabulary/enum_names.hpp"
 
 namespace grainlaw::app {
 
@@ -30,10 +31,12 @@ Task declare_study_dem(CLI::App& command);
 Task declare_study_fit(CLI::App& command);
 Task declare_study_chain(CLI::App& command);
 
-/// For an option that takes the name of a value: `names` and what they stand for.
-template <class Value>
-CLI::CheckedTransformer one_of(const std::map<std::string, Value>& names) {
-  return CLI::CheckedTransformer(names);
+/// The names of an enum as values of an option.
+template <NamedEnum E>
+CLI::CheckedTransformer by_name() {
+  std::map<std::string, E> values;
+  for (const E value : kValues<E>) values[to_string(value)] = value;
+  return CLI::CheckedTransformer(values);
 }
 
 }  // namespace grainlaw::app

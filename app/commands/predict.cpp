@@ -55,12 +55,11 @@ Task declare_predict(CLI::App& command) {
   command
       .add_option("--model", options->model,
                   "rung of the law: reduced, evolution or memory; default: those that are calibrated")
-      ->transform(one_of<Rung>(
-          {{"reduced", Rung::reduced}, {"evolution", Rung::evolution}, {"memory", Rung::memory}}));
+      ->transform(by_name<Rung>());
   command
       .add_option("--initial", options->initial,
                   "start from the law or from measured values; default: law, with --dem both")
-      ->transform(one_of<predict::Initial>({{"law", predict::Initial::law}, {"measured", predict::Initial::measured}}));
+      ->transform(by_name<predict::Initial>());
   command.add_option("--seeds", options->seeds, "seeds of the new packings, e.g. 11,12")->delimiter(',');
   command.add_option("--spec", options->spec, "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
   command.add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS");

@@ -62,7 +62,7 @@ Series work_series(const predict::WorkPrecision& study, predict::Integrator inte
                                 Marker::diamond, Marker::cross,  Marker::plus};
   const int i = static_cast<int>(integrator);
   Series series;
-  series.label = plain(predict::to_string(integrator));
+  series.label = plain(to_string(integrator));
   series.colour = static_cast<Colour>(i % kColourCount);
   series.marker = markers[static_cast<std::size_t>(i) % std::size(markers)];
   series.open_marker = i >= kColourCount;

@@ -65,14 +65,14 @@ std::string study_text(const predict::IntegratorStudy& study) {
     for (const predict::Integrator& integrator : predict::kIntegrators) {
       const predict::WorkPoint* point = predict::quickest(panel, predict::kWantedError, &integrator);
       text += point ? fmt::format("  {:<7} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
-                                  predict::to_string(integrator), point->microseconds, point->rhs_evaluations,
+                                  to_string(integrator), point->microseconds, point->rhs_evaluations,
                                   point->error, point->accuracy)
-                    : fmt::format("  {:<7} not reached\n", predict::to_string(integrator));
+                    : fmt::format("  {:<7} not reached\n", to_string(integrator));
     }
   }
   for (const predict::BatchTime& time : study.batch) {
     text += fmt::format("batch: {} paths on {} threads by {} at {:.0e}: {:.2f} s\n", study.paths, study.threads,
-                        predict::to_string(time.integrator), time.accuracy, time.seconds);
+                        to_string(time.integrator), time.accuracy, time.seconds);
   }
   return text;
 }

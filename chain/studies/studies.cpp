@@ -42,7 +42,7 @@ FitChoice everything_in(const std::filesystem::path& folder, int threads) {
   choice.options.threads = threads;
   if (!choice.dataset.spec.is_null())
     choice.options.coupling =
-        coupling_of(dem::spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling);
+        value_of<Coupling>(dem::spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling, "coupling");
   return choice;
 }
 
@@ -95,7 +95,7 @@ SettingsStudy study_chain(const std::vector<SpecSetting>& settings, std::size_t 
     if (!reference) densities = shear_densities(dataset);
     fit::CalibrationOptions fit_options;
     fit_options.threads = execution.threads;
-    fit_options.coupling = coupling_of(setting.spec.coupling);
+    fit_options.coupling = value_of<Coupling>(setting.spec.coupling, "coupling");
     SettingOutcome outcome =
         calibrated_setting(setting.name, setting.changes, dataset, fit_options, densities, path, execution);
     if (reference) {

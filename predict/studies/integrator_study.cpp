@@ -3,7 +3,6 @@
 #include <chrono>
 
 #include "predict/predict.hpp"
-#include "predict/studies/batch.hpp"
 
 namespace grainlaw::predict {
 namespace {
