@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kRounding = 1e-9;
 
-double value_of(const Observation& row, const std::string& quantity) {
+double observed(const Observation& row, const std::string& quantity) {
   return quantity == "P_star" ? row.P_star : quantity == "s_par" ? row.s_par : row.F_par;
 }
 
@@ -43,7 +43,7 @@ template <class Counts>
 double mean_over_rows(const TestRecord& test, const std::string& quantity, const Counts& counts) {
   double sum = 0, n = 0;
   for (const Observation& row : test.rows) {
-    const double value = value_of(row, quantity);
+    const double value = observed(row, quantity);
     if (!counts(row) || !std::isfinite(value)) continue;
     sum += value;
     ++n;

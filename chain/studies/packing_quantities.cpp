@@ -15,7 +15,7 @@ struct OnePacking {
   std::vector<double> values;  ///< NaN where the packing does not show it [-]
 };
 
-double value_of(const Estimate& estimate) {
+double value_or_nan(const Estimate& estimate) {
   return estimate.status == Status::not_identified ? kMissing : estimate.value;
 }
 
@@ -40,10 +40,10 @@ OnePacking quantities_of(const Dataset& dataset, std::uint64_t seed) {
     const std::string at = "@" + dem::density_text(std::round(shear.nu * 1e6) / 1e6);
     add("P_star" + at, has_pressure && has_coordination ? c.law.parameters.isotropic.P_star(shear.nu) : kMissing);
     add("C_star" + at, has_coordination ? c.law.parameters.isotropic.coordination.C_star(shear.nu) : kMissing);
-    add("s_max" + at, value_of(shear.s_max));
-    add("beta_s" + at, value_of(shear.beta_s));
-    add("F_max" + at, value_of(shear.F_max));
-    add("beta_F" + at, value_of(shear.beta_F));
+    add("s_max" + at, value_or_nan(shear.s_max));
+    add("beta_s" + at, value_or_nan(shear.beta_s));
+    add("F_max" + at, value_or_nan(shear.F_max));
+    add("beta_F" + at, value_or_nan(shear.beta_F));
   }
   add("nu_c", has_pressure ? c.law.parameters.isotropic.pressure.nu_c : kMissing);
   return result;
