@@ -50,6 +50,14 @@ void add_common(CLI::App& command, Common& common) {
   command.footer(kExitCodes);
 }
 
+/// The names of an enum as values of an option.
+template <NamedEnum E>
+CLI::CheckedTransformer by_name() {
+  std::map<std::string, E> values;
+  for (const E value : kValues<E>) values[to_string(value)] = value;
+  return CLI::CheckedTransformer(values);
+}
+
 /// Of the commands that run DEM.
 void add_checkpoints(CLI::App& command, Common& common) {
   command.add_flag("--resume,!--no-resume", common.resume,
@@ -94,13 +102,11 @@ void add_calibrate(CLI::App& app, Common& common, Task& task) {
       ->needs(target)
       ->check(CLI::Range(0.0, 1e9));
   command->add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Coupling>{{"energy", Coupling::energy}, {"single", Coupling::single}}));
+      ->transform(by_name<Coupling>());
   command
       ->add_option("--loss", options->loss,
                    "squares (default) or huber: rows that are far off, in units of their scatter, count for less")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, fit::Loss>{{"squares", fit::Loss::squares}, {"huber", fit::Loss::huber}}));
+      ->transform(by_name<fit::Loss>());
   command->add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
@@ -126,13 +132,11 @@ void add_predict(CLI::App& app, Common& common, Task& task) {
   command
       ->add_option("--model", options->model,
                    "rung of the law: reduced, evolution or memory; default: those that are calibrated")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Rung>{
-          {"reduced", Rung::reduced}, {"evolution", Rung::evolution}, {"memory", Rung::memory}}));
+      ->transform(by_name<Rung>());
   command
       ->add_option("--initial", options->initial,
                    "start from the law or from measured values; default: law, with --dem both")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, predict::Initial>{{"law", predict::Initial::law}, {"measured", predict::Initial::measured}}));
+      ->transform(by_name<predict::Initial>());
   command->add_option("--seeds", options->seeds, "seeds of the new packings, e.g. 11,12")->delimiter(',');
   command->add_option("--spec", options->spec,
                       "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");

@@ -147,9 +147,7 @@ OrderedJson shear_to_json(const ShearFit& shear) {
 ShearFit shear_from_json(const Json& object) {
   ShearFit shear;
   shear.test = object.at("test");
-  for (const Mode mode : {Mode::ISO, Mode::UNI, Mode::D2, Mode::D3, Mode::tensor}) {
-    if (to_string(mode) == object.at("mode")) shear.mode = mode;
-  }
+  shear.mode = value_of<Mode>(object.at("mode").get<std::string>(), "mode");
   shear.seed = object.at("seed");
   for (const auto& [key, member] : kShearNumbers) shear.*member = number_or_nan(object.at(key));
   for (const auto& [key, member] : kShearEstimates) shear.*member = estimate_from_json(object.at(key));

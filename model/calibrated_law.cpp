@@ -11,8 +11,6 @@
 namespace grainlaw {
 namespace {
 
-constexpr std::array<const char*, 5> kStatusNames{"fitted", "fixed", "tied", "at_bound", "not_identified"};
-
 /// Whether `name`, of parameter_table(), is `group` or one of its parameters.
 bool is_of(std::string_view name, std::string_view group) {
   return name.starts_with(group) && (name.size() == group.size() || name[group.size()] == '.');
@@ -40,14 +38,6 @@ bool without_exponential(const CalibratedLaw& law, std::size_t i) {
 }
 
 }  // namespace
-
-std::string to_string(Status status) { return kStatusNames.at(static_cast<std::size_t>(status)); }
-
-Status status_of(const std::string& name) {
-  const auto at = std::find(kStatusNames.begin(), kStatusNames.end(), name);
-  if (at == kStatusNames.end()) throw InvalidInput(fmt::format("status: '{}' is not known", name));
-  return static_cast<Status>(at - kStatusNames.begin());
-}
 
 double Estimate::half_width() const {
   if (!std::isfinite(standard_error) || std::isnan(degrees_of_freedom)) return std::nan("");

@@ -22,10 +22,7 @@ enum class Status {
   at_bound,        ///< ended on a physical bound; no standard error
   not_identified,  ///< the data do not contain it; no value and no standard error
 };
-/// The status's name in files.
-std::string to_string(Status status);
-/// The status of a name; throws InvalidInput naming an unknown one.
-Status status_of(const std::string& name);
+constexpr auto names_of(Status) { return std::array{"fitted", "fixed", "tied", "at_bound", "not_identified"}; }
 
 /// One parameter as the data determine it.
 struct Estimate {

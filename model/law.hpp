@@ -7,20 +7,16 @@
 // d(state) per unit of the path parameter, corotational terms included. No heap, no solver's header.
 
 #include <array>
-#include <string>
 
 #include "model/memory.hpp"
 #include "model/reduced_law.hpp"
+#include "model/vocabulary/enum_names.hpp"
 
 namespace grainlaw {
 
 enum class Rung { reduced, evolution, memory };
-
-/// The rung's name in files and options; the description of `--model`.
-std::string to_string(Rung rung);
-/// The rung of a name; throws InvalidInput naming an unknown one.
-Rung rung_of(const std::string& name);
-inline constexpr std::array<Rung, 3> kRungs{Rung::reduced, Rung::evolution, Rung::memory};
+constexpr auto names_of(Rung) { return std::array{"reduced", "evolution", "memory"}; }
+inline constexpr auto kRungs = kValues<Rung>;  ///< cheapest first
 
 /// What the rung takes from the volume fraction alone.
 template <class T>

@@ -32,10 +32,9 @@ struct StatePart {
   bool of_P;         ///< `typical` is in units of P
 };
 
-/// The table of the parts: calls visit(StatePart, part of each of `states`) for one after the other. Always inlined: called, it
-/// would cost a rate of the law a tenth.
+/// The table of the parts: calls visit(StatePart, part of each of `states`) for one after the other.
 template <class Visit, class... States>
-[[gnu::always_inline]] inline void for_each_part(const Visit& visit, States&... states) {
+void for_each_part(const Visit& visit, States&... states) {
   //               name      has_rate  typical  of_P
   visit(StatePart{"P*", true, 1, true}, states.P...);
   visit(StatePart{"sigma'*", true, 0.1, true}, states.sigma...);

@@ -4,15 +4,6 @@
 
 namespace grainlaw {
 
-std::string to_string(Coupling coupling) { return coupling == Coupling::energy ? "energy" : "single"; }
-
-Coupling coupling_of(const std::string& name) {
-  for (const Coupling coupling : {Coupling::energy, Coupling::single}) {
-    if (name == to_string(coupling)) return coupling;
-  }
-  throw InvalidInput("coupling: is neither energy nor single");
-}
-
 std::size_t parameter_index(const std::string& name) {
   const auto& table = parameter_table();
   for (std::size_t i = 0; i < table.size(); ++i) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "model/density_laws.hpp"
+#include "model/vocabulary/enum_names.hpp"
 
 namespace grainlaw {
 
@@ -18,10 +19,7 @@ enum class Coupling {
   energy,  ///< A2 = a2 B F, and A1 = (2/3)(A2 - sigma_dev) by the energy identity
   single,  ///< Eq. (16) as printed: one A = a0 F in both rows, A1 = A, A2 = A/3
 };
-
-std::string to_string(Coupling coupling);
-/// The coupling of a name; throws InvalidInput for one that is none.
-Coupling coupling_of(const std::string& name);
+constexpr auto names_of(Coupling) { return std::array{"energy", "single"}; }
 
 /// a0 of Eq. (19) and the pure numbers a1 = A1/(B F_dev), a2 = A2/(B F_dev).
 template <class T>

@@ -19,11 +19,29 @@ struct QuantityComparison {
   double coverage_mean = std::numeric_limits<double>::quiet_NaN();    ///< of the mean curve's band [-]
   double coverage_single = std::numeric_limits<double>::quiet_NaN();  ///< of the single run's band [-]
 };
+constexpr auto fields_of(std::type_identity<QuantityComparison>) {
+  using Q = QuantityComparison;
+  return std::tuple{Field{&Q::quantity, "quantity"},
+                    Field{&Q::rows, "rows"},
+                    Field{&Q::bias, "bias"},
+                    Field{&Q::rms, "rms"},
+                    Field{&Q::normalised_rms, "normalised_rms"},
+                    Field{&Q::largest, "largest"},
+                    Field{&Q::largest_at_eps_dev, "largest_at_eps_dev"},
+                    Field{&Q::largest_at_nu, "largest_at_nu"},
+                    Field{&Q::coverage_mean, "coverage_mean"},
+                    Field{&Q::coverage_single, "coverage_single"}};
+}
+static_assert(tells_every_member<QuantityComparison>());
 
 struct Comparison {
   std::string test;                            ///< name of the test
   std::vector<QuantityComparison> quantities;  ///< P_star, s_par, F_par
 };
+constexpr auto fields_of(std::type_identity<Comparison>) {
+  return std::tuple{Field{&Comparison::test, "test"}, Field{&Comparison::quantities, "quantities"}};
+}
+static_assert(tells_every_member<Comparison>());
 
 /// `prediction` was made at points_of(test); rows are paired in order, the prediction may end early. Throws InvalidInput
 /// when a pair lies at different strains.

@@ -137,18 +137,11 @@ LawState<double> unknown_slope() {
 PredictedRow row_of(const PathPlace& place, const LawState<double>& state, const Deviator<double>& N) {
   PredictedRow row;
   row.segment = place.segment;
-  row.strain = place.strain;
-  row.eps_vol = row.strain.tensor.trace();
-  row.eps_dev = deviatoric_norm(row.strain.tensor);
+  set_strain(row, place.strain);
   row.shear_path = place.shear_path;
   row.nu = place.nu;
   row.state = state;
-  const bool jammed = state.P > 0;
-  row.s_dev = jammed ? state.sigma.norm() / state.P : kNaN;
-  row.F_dev = state.F.norm();
-  const bool sheared = !N.isZero();
-  row.s_par = sheared && jammed ? state.sigma.dot(N) / state.P : kNaN;
-  row.F_par = sheared ? state.F.dot(N) : kNaN;
+  set_ratios(row, state.P, state.sigma, state.F, N);
   return row;
 }
 
@@ -159,18 +152,6 @@ void conclude(Prediction& prediction, const ValidRange& range, std::chrono::stea
   if (prediction.unjammed) prediction.unjammed_at = first->at;
   prediction.warnings = warnings_of(prediction.rows, prediction.events, range);
   prediction.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-}
-
-std::string to_string(EventKind kind) {
-  switch (kind) {
-    case EventKind::unjammed:
-      return "unjammed";
-    case EventKind::jammed:
-      return "jammed";
-    case EventKind::tension:
-      break;
-  }
-  return "tension";
 }
 
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {

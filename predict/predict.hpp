@@ -25,6 +25,10 @@ struct OutputPoint {
   int segment = 0;  ///< index of the segment
   double e = 0;     ///< path parameter in [0, length of the segment] [-]
 };
+constexpr auto fields_of(std::type_identity<OutputPoint>) {
+  return std::tuple{Field{&OutputPoint::segment, "segment"}, Field{&OutputPoint::e, "e"}};
+}
+static_assert(tells_every_member<OutputPoint>());
 
 /// `per_segment` equal intervals on each segment, ends included.
 std::vector<OutputPoint> uniform_points(const std::vector<StraightSegment>& segments, int per_segment);
@@ -54,15 +58,56 @@ struct PredictedRow {
   RowBand mean, single;         ///< of the mean over packings, and of the run of one packing
 };
 
+/// The columns of a prediction, in the order of writing.
+constexpr auto fields_of(std::type_identity<PredictedRow>) {
+  using R = PredictedRow;
+  constexpr auto needed = Rule::needed, number = Rule::needed_number;
+  return std::tuple_cat(
+      place_fields<R>(number),
+      std::tuple{
+          Field{[](auto& r) -> auto& { return r.state.P; }, "P_star", "", "P*", "pressure times 2<r>/k", number},
+          Field{&R::s_dev, "s_dev", "", "s_dev", "stress ratio, a norm", needed},
+          Field{&R::s_par, "s_par", "", "s_par", "signed stress ratio along the path's first shear direction", needed},
+          Field{&R::F_dev, "F_dev", "", "F_dev", "deviatoric fabric, a norm", number},
+          Field{&R::F_par, "F_par", "", "F_par", "signed deviatoric fabric along the path's first shear direction", needed},
+          Field{[](auto& r) -> auto& { return r.state.sigma; }, "sigma_dev", "", "sigma'*",
+                "deviatoric stress times 2<r>/k, compression positive", number},
+          Field{[](auto& r) -> auto& { return r.state.F; }, "fabric_dev", "", "F'", "deviatoric fabric", number},
+          Field{[](auto& r) -> auto& { return r.mean.P; }, "P_star_mean95", "", "",
+                "half width of the 95 % band of the mean curve about P*"},
+          Field{[](auto& r) -> auto& { return r.single.P; }, "P_star_single95", "", "",
+                "half width of the 95 % band of a single run about P*"},
+          Field{[](auto& r) -> auto& { return r.mean.s_dev; }, "s_dev_mean95", "", "",
+                "half width of the 95 % band of the mean curve about s_dev"},
+          Field{[](auto& r) -> auto& { return r.single.s_dev; }, "s_dev_single95", "", "",
+                "half width of the 95 % band of a single run about s_dev"},
+          Field{[](auto& r) -> auto& { return r.mean.s_par; }, "s_par_mean95", "", "",
+                "half width of the 95 % band of the mean curve about s_par"},
+          Field{[](auto& r) -> auto& { return r.single.s_par; }, "s_par_single95", "", "",
+                "half width of the 95 % band of a single run about s_par"},
+          Field{[](auto& r) -> auto& { return r.mean.F_dev; }, "F_dev_mean95", "", "",
+                "half width of the 95 % band of the mean curve about F_dev"},
+          Field{[](auto& r) -> auto& { return r.single.F_dev; }, "F_dev_single95", "", "",
+                "half width of the 95 % band of a single run about F_dev"},
+          Field{[](auto& r) -> auto& { return r.mean.F_par; }, "F_par_mean95", "", "",
+                "half width of the 95 % band of the mean curve about F_par"},
+          Field{[](auto& r) -> auto& { return r.single.F_par; }, "F_par_single95", "", "",
+                "half width of the 95 % band of a single run about F_par"}});
+}
+
 /// What happens on the way besides corners; see path_integration.hpp.
 enum class EventKind { unjammed, jammed, tension };
-std::string to_string(EventKind kind);
+constexpr auto names_of(EventKind) { return std::array{"unjammed", "jammed", "tension"}; }
 
 struct PathEvent {
   EventKind kind = EventKind::unjammed;
   OutputPoint at;  ///< segment and path parameter
   double nu = 0;   ///< volume fraction there [-]
 };
+constexpr auto fields_of(std::type_identity<PathEvent>) {
+  return std::tuple{Field{&PathEvent::kind, "kind"}, Field{&PathEvent::at, ""}, Field{&PathEvent::nu, "nu"}};
+}
+static_assert(tells_every_member<PathEvent>());
 
 /// Whose influence on the rows is wanted; nobody's by default, which costs nothing.
 struct Sensitivity {

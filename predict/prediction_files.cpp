@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "model/files/fields_json.hpp"
 #include "model/files/path_json.hpp"
 #include "predict/prediction_series.hpp"
 #include "model/files/one_line.hpp"
@@ -15,122 +16,45 @@ namespace {
 
 namespace fs = std::filesystem;
 
-
-OrderedJson head(Rung model, Initial initial, const std::optional<std::uint64_t>& seed) {
-  return {{"model", to_string(model)},
-          {"initial", to_string(initial)},
-          {"seed", seed ? OrderedJson(*seed) : OrderedJson(nullptr)}};
-}
-
-template <class Entry>
-void read_head(const Json& object, Entry& entry) {
-  entry.model = rung_of(object.at("model").get<std::string>());
-  entry.initial = object.at("initial") == to_string(Initial::measured) ? Initial::measured : Initial::law;
-  if (!object.at("seed").is_null()) entry.seed = object.at("seed").get<std::uint64_t>();
-}
-
 OrderedJson curve_to_json(const PredictedCurve& curve) {
-  OrderedJson object = head(curve.model, curve.initial, curve.seed);
-  const SolverStatistics& s = curve.prediction.statistics;
-  object["file"] = curve.file;
+  OrderedJson object = fields_to_json(curve);
   object["rows"] = curve.prediction.rows.size();
   object["unjammed"] = curve.prediction.unjammed;
-  if (curve.prediction.unjammed) {
-    object["unjammed_at"] = {{"segment", curve.prediction.unjammed_at.segment}, {"e", curve.prediction.unjammed_at.e}};
-  }
+  if (curve.prediction.unjammed) object["unjammed_at"] = fields_to_json(curve.prediction.unjammed_at);
   OrderedJson& events = object["events"] = OrderedJson::array();
-  for (const PathEvent& event : curve.prediction.events) {
-    events.push_back(
-        {{"kind", to_string(event.kind)}, {"segment", event.at.segment}, {"e", event.at.e}, {"nu", event.nu}});
-  }
+  for (const PathEvent& event : curve.prediction.events) events.push_back(fields_to_json(event));
   object["warnings"] = curve.prediction.warnings;
-  object["solver"] = {{"steps", s.steps},
-                      {"rhs_evaluations", s.rhs_evaluations},
-                      {"error_test_failures", s.error_test_failures},
-                      {"nonlinear_iterations", s.nonlinear_iterations},
-                      {"restarts", s.restarts},
-                      {"seconds", s.seconds}};
+  object["solver"] = fields_to_json(curve.prediction.statistics);
   return object;
 }
 
 PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
   PredictedCurve curve;
-  read_head(object, curve);
-  curve.file = object.at("file");
+  read_fields(object, curve);
   if (!is_safe_name(curve.file))
     throw InvalidInput(fmt::format("file: '{}' is no name of a file", one_line(curve.file, 60)));
   curve.prediction.model = curve.model;
   curve.prediction.unjammed = object.at("unjammed");
-  if (curve.prediction.unjammed) {
-    const Json& at = object.at("unjammed_at");
-    curve.prediction.unjammed_at = {at.at("segment"), at.at("e")};
-  }
-  for (const Json& event : object.at("events")) {
-    for (const auto kind : {EventKind::unjammed, EventKind::jammed, EventKind::tension}) {
-      if (event.at("kind") == to_string(kind))
-        curve.prediction.events.push_back({kind, {event.at("segment"), event.at("e")}, event.at("nu")});
-    }
-  }
+  if (curve.prediction.unjammed) read_fields(object.at("unjammed_at"), curve.prediction.unjammed_at);
+  for (const Json& event : object.at("events")) read_fields(event, curve.prediction.events.emplace_back());
   curve.prediction.warnings = object.at("warnings").get<std::vector<std::string>>();
-  const Json& s = object.at("solver");
-  curve.prediction.statistics = {
-      s.at("steps"),    s.at("rhs_evaluations"), s.at("error_test_failures"), s.at("nonlinear_iterations"),
-      s.at("restarts"), s.at("seconds")};
+  read_fields(object.at("solver"), curve.prediction.statistics);
   curve.prediction.rows = read_prediction_series(folder / curve.file);
   return curve;
 }
 
-OrderedJson comparison_to_json(const CurveComparison& entry) {
-  OrderedJson object = head(entry.model, entry.initial, entry.seed);
-  object["test"] = entry.comparison.test;
-  OrderedJson& quantities = object["quantities"] = OrderedJson::array();
-  for (const QuantityComparison& q : entry.comparison.quantities) {
-    quantities.push_back({{"quantity", q.quantity},
-                          {"rows", q.rows},
-                          {"bias", number_or_null(q.bias)},
-                          {"rms", number_or_null(q.rms)},
-                          {"normalised_rms", number_or_null(q.normalised_rms)},
-                          {"largest", number_or_null(q.largest)},
-                          {"largest_at_eps_dev", number_or_null(q.largest_at_eps_dev)},
-                          {"largest_at_nu", number_or_null(q.largest_at_nu)},
-                          {"coverage_mean", number_or_null(q.coverage_mean)},
-                          {"coverage_single", number_or_null(q.coverage_single)}});
-  }
-  return object;
-}
-
 /// The other way round of rung_to_json().
 void read_rung(const Json& object, PredictionFolder& content) {
-  content.needed = {rung_of(object.at("needed").get<std::string>()), object.at("why")};
-  for (const Json& change : object.at("changes")) {
-    content.changes.push_back({rung_of(change.at("from").get<std::string>()),
-                               rung_of(change.at("to").get<std::string>()),
-                               {change.at("P_star"), change.at("stress_ratio"), change.at("fabric")}});
-  }
-}
-
-CurveComparison comparison_from_json(const Json& object) {
-  CurveComparison entry;
-  read_head(object, entry);
-  entry.comparison.test = object.at("test");
-  for (const Json& q : object.at("quantities")) {
-    entry.comparison.quantities.push_back({q.at("quantity"), q.at("rows"), number_or_nan(q.at("bias")),
-                                           number_or_nan(q.at("rms")), number_or_nan(q.at("normalised_rms")),
-                                           number_or_nan(q.at("largest")), number_or_nan(q.at("largest_at_eps_dev")),
-                                           number_or_nan(q.at("largest_at_nu")), number_or_nan(q.at("coverage_mean")),
-                                           number_or_nan(q.at("coverage_single"))});
-  }
-  return entry;
+  read_fields(object, content.needed);
+  for (const Json& change : object.at("changes")) read_fields(change, content.changes.emplace_back());
 }
 
 }  // namespace
 
-std::string to_string(Initial initial) { return initial == Initial::law ? "law" : "measured"; }
-
 std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>& comparisons) {
   std::vector<CurveComparison> means;
   for (const Rung model : kRungs) {
-    for (const Initial initial : {Initial::law, Initial::measured}) {
+    for (const Initial initial : kValues<Initial>) {
       CurveComparison mean{model, initial, std::nullopt, {"mean", {}}};
       double seeds = 0;
       for (const CurveComparison& entry : comparisons) {
@@ -173,16 +97,9 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
 }
 
 OrderedJson rung_to_json(const PredictionFolder& content) {
-  OrderedJson object{{"needed", to_string(content.needed.rung)}, {"why", content.needed.why}};
+  OrderedJson object = fields_to_json(content.needed);
   OrderedJson& changes = object["changes"] = OrderedJson::array();
-  for (const RungChange& change : content.changes) {
-    const RungDifference& d = change.difference;
-    changes.push_back({{"from", to_string(change.cheaper)},
-                       {"to", to_string(change.richer)},
-                       {"P_star", d.P},
-                       {"stress_ratio", d.s},
-                       {"fabric", d.F}});
-  }
+  for (const RungChange& change : content.changes) changes.push_back(fields_to_json(change));
   return object;
 }
 
@@ -194,7 +111,7 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
   }
   if (content.dem) {
     OrderedJson entries = OrderedJson::array();
-    for (const CurveComparison& entry : content.comparisons) entries.push_back(comparison_to_json(entry));
+    for (const CurveComparison& entry : content.comparisons) entries.push_back(fields_to_json(entry));
     write_json(folder / "comparison.json",
                {{"format", "grainlaw comparison"},
                 {"format_version", 1},
@@ -236,7 +153,7 @@ PredictionFolder read_prediction(const fs::path& folder) {
       file = folder / "comparison.json";
       const Json comparisons = read_json(file, JsonSource::own);
       for (const Json& entry : comparisons.at("comparisons"))
-        content.comparisons.push_back(comparison_from_json(entry));
+        read_fields(entry, content.comparisons.emplace_back());
     }
   } catch (const Json::exception& error) {
     throw InvalidInput(fmt::format("{}: is not of this version: {}; run grainlaw predict again",

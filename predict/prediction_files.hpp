@@ -16,7 +16,7 @@
 namespace grainlaw::predict {
 
 enum class Initial { law, measured };  ///< start of a prediction: the calibrated law, or the packing's measured values
-std::string to_string(Initial initial);
+constexpr auto names_of(Initial) { return std::array{"law", "measured"}; }
 
 /// The law along the path.
 struct PredictedCurve {
@@ -26,6 +26,12 @@ struct PredictedCurve {
   std::string file;                   ///< CSV in the prediction's folder
   Prediction prediction;
 };
+/// The keys that come first; the prediction follows.
+constexpr auto fields_of(std::type_identity<PredictedCurve>) {
+  using C = PredictedCurve;
+  return std::tuple{Field{&C::model, "model"}, Field{&C::initial, "initial"}, Field{&C::seed, "seed"},
+                    Field{&C::file, "file"}};
+}
 
 /// One curve against one DEM run, or the mean over runs.
 struct CurveComparison {
@@ -34,12 +40,23 @@ struct CurveComparison {
   std::optional<std::uint64_t> seed;  ///< none: mean over seeds (largest: of the seed where it is largest)
   Comparison comparison;     ///< test "mean" when none
 };
+constexpr auto fields_of(std::type_identity<CurveComparison>) {
+  using C = CurveComparison;
+  return std::tuple{Field{&C::model, "model"}, Field{&C::initial, "initial"}, Field{&C::seed, "seed"},
+                    Field{&C::comparison, ""}};
+}
+static_assert(tells_every_member<CurveComparison>());
 
 /// What a richer rung changes on the curves from the law's start.
 struct RungChange {
   Rung cheaper = Rung::reduced, richer = Rung::evolution;
   RungDifference difference;
 };
+constexpr auto fields_of(std::type_identity<RungChange>) {
+  using C = RungChange;
+  return std::tuple{Field{&C::cheaper, "from"}, Field{&C::richer, "to"}, Field{&C::difference, ""}};
+}
+static_assert(tells_every_member<RungChange>());
 
 struct PredictionFolder {
   std::string name;  ///< last part of the folder's path

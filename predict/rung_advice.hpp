@@ -9,6 +9,10 @@ struct RungAdvice {
   Rung rung = Rung::reduced;  ///< the cheapest that contains what the path does
   std::string why;            ///< e.g. "segments[1] turns the shear back"
 };
+constexpr auto fields_of(std::type_identity<RungAdvice>) {
+  return std::tuple{Field{&RungAdvice::rung, "needed"}, Field{&RungAdvice::why, "why"}};
+}
+static_assert(tells_every_member<RungAdvice>());
 
 /// memory where shear turns back, or where at constant volume the sheared pressure differs from that of ISO unloading by
 /// more than 2 %; evolution where the volume changes with or after shear; else reduced.
@@ -20,6 +24,11 @@ struct RungDifference {
   double s = 0;  ///< |sigma'/P - sigma'/P| [-]
   double F = 0;  ///< |F' - F'| [-]
 };
+constexpr auto fields_of(std::type_identity<RungDifference>) {
+  using D = RungDifference;
+  return std::tuple{Field{&D::P, "P_star"}, Field{&D::s, "stress_ratio"}, Field{&D::F, "fabric"}};
+}
+static_assert(tells_every_member<RungDifference>());
 
 /// Of two predictions at the same points.
 RungDifference difference(const Prediction& cheaper, const Prediction& richer);

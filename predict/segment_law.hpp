@@ -28,7 +28,7 @@ inline const Deviator<double>& numbers(const Deviator<double>& part) { return pa
 
 /// Writes `of` the numbers of each part, by default as they stand. Part by part: reading in other portions than were written makes a processor wait.
 template <class Of = std::identity>
-void pack(const LawState<double>& state, double* y, const Of& of = {}) {
+[[gnu::flatten]] void pack(const LawState<double>& state, double* y, const Of& of = {}) {
   for_each_part(
       [&](const StatePart&, const auto& part) {
         const auto& from = numbers(part);
@@ -43,7 +43,7 @@ inline Unknowns packed(const LawState<double>& state) {
   pack(state, y.data());
   return y;
 }
-inline LawState<double> unpacked(const double* y) {
+[[gnu::flatten]] inline LawState<double> unpacked(const double* y) {
   LawState<double> state;
   for_each_part(
       [&y](const StatePart&, auto& part) {

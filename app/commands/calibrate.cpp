@@ -154,7 +154,8 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   fit_options.loss = options.loss;
   fit_options.starts = options.starts;
   fit_options.profiles = options.checks;
-  fit_options.coupling = options.coupling.value_or(spec ? coupling_of(spec->coupling) : Coupling::energy);
+  fit_options.coupling =
+      options.coupling.value_or(spec ? value_of<Coupling>(spec->coupling, "coupling") : Coupling::energy);
   if (spec) spec->coupling = to_string(fit_options.coupling);
 
   const std::optional<chain::PrecisionTarget> target =

@@ -7,7 +7,7 @@
 #include "model/files/digest.hpp"
 #include "model/files/path_json.hpp"
 #include "dem/runs/preparation_json.hpp"
-#include "model/files/series_columns.hpp"
+#include "model/files/column.hpp"
 #include "model/files/series_csv.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "dem/runs/test_file.hpp"
@@ -72,7 +72,7 @@ std::string value_text(double value) { return std::isnan(value) ? "undefined" : 
 /// Last row of a series: what most want to see first.
 OrderedJson end_values(const Observation& row) {
   OrderedJson values;
-  for (const auto& column : observation_columns()) {
+  for (const auto& column : columns_of<Observation>()) {
     for (const char* wanted : {"time", "eps_vol", "eps_dev", "nu", "P_star", "s_dev", "F_v", "F_dev", "C_star",
                                "rattler_fraction", "energy_residual"}) {
       if (column.name == wanted) values[column.title()] = number_or_null(column.get(row));

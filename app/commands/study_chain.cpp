@@ -35,7 +35,7 @@ ExitCode study_chain(const StudyChainOptions& options, Session& session) {
     if (!reference) densities = chain::shear_densities(dataset);
     fit::CalibrationOptions fit_options;
     fit_options.threads = session.threads;
-    fit_options.coupling = coupling_of(setting.spec.coupling);
+    fit_options.coupling = value_of<Coupling>(setting.spec.coupling, "coupling");
     chain::SettingOutcome outcome =
         chain::calibrated_setting(setting.name, setting.changes, dataset, fit_options, densities, path, session);
     if (reference) {

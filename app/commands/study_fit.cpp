@@ -38,7 +38,8 @@ chain::FitChoice everything_in(const std::filesystem::path& folder, int threads)
   choice.options.threads = threads;
   if (!choice.dataset.spec.is_null())
     choice.options.coupling =
-        coupling_of(dem::spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling);
+        value_of<Coupling>(
+            dem::spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling, "coupling");
   return choice;
 }
 

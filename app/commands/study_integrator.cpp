@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "app/commands/study_output.hpp"
+#include "chain/studies/study_json.hpp"
 #include "model/parameters_file.hpp"
 #include "model/files/output_folder.hpp"
 #include "model/vocabulary/error.hpp"
 #include "predict/studies/walker.hpp"
 #include "predict/predict.hpp"
-#include "predict/studies/batch.hpp"
 #include "predict/studies/work_precision.hpp"
 
 namespace grainlaw::app {
@@ -83,7 +83,7 @@ OrderedJson values_to_json(const LawParameters<double>& parameters) {
 }
 
 OrderedJson point_to_json(const predict::WorkPoint& point) {
-  return {{"integrator", predict::to_string(point.integrator)},
+  return {{"integrator", to_string(point.integrator)},
           {"accuracy", point.accuracy},
           {"error", number_or_null(point.error)},
           {"rhs_evaluations", point.rhs_evaluations},
@@ -111,7 +111,7 @@ OrderedJson panel_to_json(const predict::WorkPrecision& study) {
 OrderedJson batch_to_json(const std::vector<BatchTime>& times, int paths, int threads) {
   OrderedJson array = OrderedJson::array();
   for (const BatchTime& time : times) {
-    array.push_back({{"integrator", predict::to_string(time.integrator)},
+    array.push_back({{"integrator", to_string(time.integrator)},
                      {"accuracy", time.accuracy},
                      {"paths", paths},
                      {"threads", threads},
@@ -127,7 +127,7 @@ report::Series series_of(const predict::WorkPrecision& study, Integrator integra
                                 Marker::diamond, Marker::cross,  Marker::plus};
   const int i = static_cast<int>(integrator);
   Series series;
-  series.label = plain(predict::to_string(integrator));
+  series.label = plain(to_string(integrator));
   series.colour = static_cast<Colour>(i % kColourCount);
   series.marker = markers[static_cast<std::size_t>(i) % std::size(markers)];
   series.open_marker = i >= kColourCount;
@@ -173,14 +173,14 @@ std::string text_of(const std::vector<predict::WorkPrecision>& studies, const st
     for (const Integrator& integrator : predict::kIntegrators) {
       const predict::WorkPoint* point = predict::quickest(study, kWantedError, &integrator);
       text += point ? fmt::format("  {:<7} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
-                                  predict::to_string(integrator), point->microseconds, point->rhs_evaluations,
-                                  point->error, point->accuracy)
-                    : fmt::format("  {:<7} not reached\n", predict::to_string(integrator));
+                                  to_string(integrator), point->microseconds, point->rhs_evaluations, point->error,
+                                  point->accuracy)
+                    : fmt::format("  {:<7} not reached\n", to_string(integrator));
     }
   }
   for (const BatchTime& time : times) {
     text += fmt::format("batch: {} paths on {} threads by {} at {:.0e}: {:.2f} s\n", paths, threads,
-                        predict::to_string(time.integrator), time.accuracy, time.seconds);
+                        to_string(time.integrator), time.accuracy, time.seconds);
   }
   return text;
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/vocabulary/error.hpp"
 #include "model/student.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -69,10 +69,6 @@ int first_from(int low, int high, const Predicate& is) {
 bool same_packings(const PlanSettings& a, const PlanSettings& b) {
   return a.particles == b.particles && a.strain_rate == b.strain_rate && a.time_step_fraction == b.time_step_fraction &&
          a.densities == b.densities && a.shear_strain == b.shear_strain;
-}
-
-std::string to_string(Cause cause) {
-  return cause == Cause::strain_rate ? "strain_rate" : cause == Cause::time_step ? "time_step" : "size";
 }
 
 double shape(Cause cause, const PlanSettings& settings, const Scale& scale) {

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "model/vocabulary/enum_names.hpp"
+
 namespace grainlaw::chain {
 
 /// What a plan chooses; everything else is the SPEC's.
@@ -37,8 +39,8 @@ struct SteadyScatter {
 };
 
 enum class Cause { strain_rate, time_step, size };
-inline constexpr std::array kCauses{Cause::strain_rate, Cause::time_step, Cause::size};
-std::string to_string(Cause cause);
+constexpr auto names_of(Cause) { return std::array{"strain_rate", "time_step", "size"}; }
+inline constexpr auto kCauses = kValues<Cause>;
 
 /// What shapes are relative to.
 struct Scale {

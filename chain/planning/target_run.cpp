@@ -65,20 +65,6 @@ PlanSettings first_part(PlanSettings plan, const std::vector<PlanSettings>& fini
 
 }  // namespace
 
-std::string to_string(TargetOutcome outcome) {
-  switch (outcome) {
-    case TargetOutcome::met:
-      return "met";
-    case TargetOutcome::discrepancy:
-      return "the law's own discrepancy is larger than the target";
-    case TargetOutcome::max_cost:
-      return "no plan that is left reaches it in the time allowed";
-    case TargetOutcome::no_band:
-      break;
-  }
-  return "the prediction has no band";
-}
-
 std::string text_of(const PlanSettings& s) {
   return fmt::format("{} packings of {} spheres, {:.4g} 1/s, step {:.3g}, {} densities, shear to {:.3g}", s.packings,
                      s.particles, s.strain_rate, s.time_step_fraction, s.densities, s.shear_strain);

@@ -28,7 +28,10 @@ struct TargetActions {
 };
 
 enum class TargetOutcome { met, discrepancy, max_cost, no_band };
-std::string to_string(TargetOutcome outcome);
+constexpr auto names_of(TargetOutcome) {
+  return std::array{"met", "the law's own discrepancy is larger than the target",
+                    "no plan that is left reaches it in the time allowed", "the prediction has no band"};
+}
 
 struct TargetRound {
   PlanSettings settings;

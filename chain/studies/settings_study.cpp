@@ -5,7 +5,8 @@
 #include <functional>
 #include <set>
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
+#include "dem/element_tests/energy_watch.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::chain {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "dem/statics/relax.hpp"
 
 namespace grainlaw::dem {
@@ -19,6 +19,16 @@ struct PackingOptions {
   std::uint64_t seed = 1;         ///< key of the generator
   Material material;
 };
+constexpr auto fields_of(std::type_identity<PackingOptions>) {
+  using P = PackingOptions;
+  return std::tuple{
+      Field{&P::particles, "particles", "", "N", "number of spheres of a packing"},
+      Field{&P::size_width, "size_width", "", "w", "w = r_max/r_min of the uniform size distribution"},
+      Field{&P::mean_radius, "mean_radius", "m", "<r>", "mean of the size distribution"},
+      Field{&P::seed, "seed", "", "", "seed of the packing", Rule::fixed},  // a key of TEST, a list in SPEC
+      Field{&P::material, ""}};
+}
+static_assert(tells_every_member<PackingOptions>());
 
 struct PreparationOptions {
   PackingOptions packing;
@@ -34,6 +44,25 @@ struct PreparationOptions {
   std::optional<double> nu_end;   ///< end of the unloading branch; default: lowest of keep_unloading, else nu_start [-]
   int rows = 200;                 ///< rows of each branch's series (besides the first)
 };
+constexpr auto fields_of(std::type_identity<PreparationOptions>) {
+  using P = PreparationOptions;
+  return std::tuple{
+      Field{&P::packing, ""},
+      Field{&P::engine, ""},
+      Field{&P::drive, ""},
+      Field{&P::relax, ""},
+      Field{&P::rows, "rows", "", "", "rows recorded in each segment"},
+      Field{&P::nu_gas, "nu_gas", "", "nu", "volume fraction of the random gas", Rule::fixed},
+      Field{&P::gas_compression_factor, "gas_compression_factor", "", "",
+            "strain rate of the gas compression over strain_rate", Rule::fixed},
+      Field{&P::nu_start, "nu_start", "", "nu", "volume fraction at which loading begins"},
+      Field{&P::nu_max, "nu_max", "", "nu", "volume fraction at which unloading begins"},
+      Field{&P::nu_end, "nu_end", "", "nu", "volume fraction at which unloading ends"},
+      // what is kept on the way does not change what others see of a preparation; its own key names them
+      Field{&P::keep_loading, "keep_loading", "", "", "", Rule::free},
+      Field{&P::keep_unloading, "keep_unloading", "", "", "", Rule::free}};
+}
+static_assert(tells_every_member<PreparationOptions>());
 
 /// A state kept at a density, relaxed there.
 struct KeptState {

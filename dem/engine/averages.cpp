@@ -43,12 +43,12 @@ ContactSums sum_contacts(const ForceField& field, const std::vector<double>& rad
   return sums;
 }
 
-ContactSums sum_contacts(const Simulation& sim, const CellMotion& motion) {
-  const Packing& p = sim.state.packing;
+ContactSums sum_contacts(Simulation& sim, const CellMotion& motion) {
+  const Packing& p = sim.state().packing;
   const std::unique_ptr<ContactView> view = view_contacts(sim, motion);  // current velocities, not those predicted
   const ForceField& field = view->field;
   std::vector<ContactSums> parts(block_count(p.size()));
-  sim.team->for_each_block(parts.size(), [&](std::size_t block) {
+  sim.team().for_each_block(parts.size(), [&](std::size_t block) {
     const std::size_t begin = block * kBlockSize, end = std::min(p.size(), begin + kBlockSize);
     parts[block] = field.wall_driven ? sum_contacts<true>(field, p.radius, begin, end)
                                      : sum_contacts<false>(field, p.radius, begin, end);
@@ -81,33 +81,28 @@ double ratio(double numerator, double denominator) {
 
 }  // namespace
 
-Observation observe(const Simulation& sim, const CellMotion& motion, const Deviator<double>& N) {
-  const Packing& p = sim.state.packing;
-  const Material& material = sim.state.material;
+Observation observe(Simulation& sim, const CellMotion& motion, const Deviator<double>& N) {
+  const State& state = sim.state();
+  const Packing& p = state.packing;
+  const Material& material = state.material;
   const ContactSums sums = sum_contacts(sim, motion);
   const double V = p.volume();
   const double spheres = static_cast<double>(p.size());
   const double mean_r = mean_radius(p);
-  const bool sheared = N.squaredNorm() > 0;
 
   Observation row;
-  row.time = sim.state.time;
+  row.time = state.time;
   row.nu = volume_fraction(p);
   row.stress.tensor = sums.virial / V;
   row.stress_kinetic.tensor = kinetic_tensor(p) / V;
   const double P = row.stress.tensor.trace() / 3;
   row.P_star = p.size() > 0 ? 2 * mean_r / material.stiffness * P : 0;
-  const Deviator<double> sigma = deviator<double>(row.stress.tensor);
-  row.s_dev = ratio(sigma.norm(), P);
-  if (sheared) row.s_par = ratio(sigma.dot(N), P);
   row.shape_stress = shape_factor(-row.stress.tensor);
   row.lode_stress = lode_angle(-row.stress.tensor);
 
   row.fabric.tensor = sums.fabric / V;
-  const Deviator<double> F = deviator<double>(row.fabric.tensor);
   row.F_v = row.fabric.tensor.trace();
-  row.F_dev = F.norm();
-  if (sheared) row.F_par = F.dot(N);
+  set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
   row.shape_fabric = shape_factor(-row.fabric.tensor);
   row.lode_fabric = lode_angle(-row.fabric.tensor);
 
@@ -121,10 +116,10 @@ Observation observe(const Simulation& sim, const CellMotion& motion, const Devia
 
   row.E_kin = kinetic_energy(p);
   row.E_pot = sums.elastic;
-  row.W_box = sim.state.ledger.W_box;
-  row.D_contact = sim.state.ledger.D_contact;
-  row.D_background = sim.state.ledger.D_background;
-  row.energy_residual = energy_residual(sim);
+  row.W_box = state.ledger.W_box;
+  row.D_contact = state.ledger.D_contact;
+  row.D_background = state.ledger.D_background;
+  row.energy_residual = energy_residual(state);
 
   const Eigen::Matrix3d D = 0.5 * (motion.L + motion.L.transpose());
   const double rate = std::max(std::abs(D.trace()), deviatoric_norm(D));

@@ -15,6 +15,9 @@ namespace grainlaw::dem {
 /// Measures the simulation at its current time. `motion` is the cell's at this instant (viscous forces, rate of the
 /// inertial number); `N` the direction for s_par and F_par (zero: they are undefined). Strain, segment, shear_path
 /// and shape/Lode of strain are the caller's: they come from the path. Ledger quantities are filled from the state.
-Observation observe(const Simulation& sim, const CellMotion& motion, const Deviator<double>& N);
+Observation observe(Simulation& sim, const CellMotion& motion, const Deviator<double>& N);
+inline Observation observe(Simulation&& sim, const CellMotion& motion, const Deviator<double>& N) {
+  return observe(sim, motion, N);
+}
 
 }  // namespace grainlaw::dem

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/vocabulary/fields.hpp"
+
 namespace grainlaw::dem {
 
 struct Material {
@@ -17,6 +19,14 @@ struct Material {
   double contact_viscosity = 1;       ///< gamma [kg/s]
   double background_viscosity = 0.1;  ///< gamma_b [kg/s]
 };
+constexpr auto fields_of(std::type_identity<Material>) {
+  using M = Material;
+  return std::tuple{Field{&M::density, "density", "kg/m^3", "rho", "mass density of the spheres"},
+                    Field{&M::stiffness, "stiffness", "kg/s^2", "k", "contact stiffness k"},
+                    Field{&M::contact_viscosity, "contact_viscosity", "kg/s", "gamma", "contact viscosity gamma"},
+                    Field{&M::background_viscosity, "background_viscosity", "kg/s", "gamma_b", "background drag gamma_b"}};
+}
+static_assert(tells_every_member<Material>());
 
 /// Mass of a sphere of radius `r` [kg].
 inline double sphere_mass(const Material& m, double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r * m.density; }

@@ -4,20 +4,19 @@
 
 namespace grainlaw::dem {
 
-void account(Simulation& sim, const PassSums& sums) {
-  State& state = sim.state;
-  const double h = sim.dt / 2;
+void account(State& state, double dt, const PassSums& sums) {
+  const double h = dt / 2;
   state.ledger.W_box += h * (state.sums.box_power + sums.box_power);
   state.ledger.D_contact += h * (state.sums.contact_power + sums.contact_power);
   state.ledger.D_background += h * (state.sums.drag_power + sums.drag_power);
   state.sums = sums;
 }
 
-void open_ledger(Simulation& sim) {
-  const double E_kin = kinetic_energy(sim.state.packing);
-  sim.state.ledger = {};
-  sim.state.ledger.E_start = E_kin + sim.state.sums.E_pot;
-  sim.state.ledger.E_kin_start = E_kin;
+void open_ledger(State& state) {
+  const double E_kin = kinetic_energy(state.packing);
+  state.ledger = {};
+  state.ledger.E_start = E_kin + state.sums.E_pot;
+  state.ledger.E_kin_start = E_kin;
 }
 
 double kinetic_energy(const Packing& p) {
@@ -28,12 +27,12 @@ double kinetic_energy(const Packing& p) {
   return twice / 2;
 }
 
-double energy_residual(const Simulation& sim) {
-  const Ledger& ledger = sim.state.ledger;
+double energy_residual(const State& state) {
+  const Ledger& ledger = state.ledger;
   const double lost = ledger.D_contact + ledger.D_background;
   const double scale = std::abs(ledger.W_box) + ledger.E_kin_start + lost;
   if (scale == 0) return 0;
-  const double change = kinetic_energy(sim.state.packing) + sim.state.sums.E_pot - ledger.E_start;
+  const double change = kinetic_energy(state.packing) + state.sums.E_pot - ledger.E_start;
   return (ledger.W_box - change - lost) / scale;
 }
 

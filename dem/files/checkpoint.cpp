@@ -1,6 +1,5 @@
 #include "dem/files/checkpoint.hpp"
 
-#include <array>
 #include <cmath>
 
 #include "dem/files/sealed_file.hpp"
@@ -12,50 +11,48 @@ namespace {
 
 constexpr SealedFormat kFormat{"GRAINRUN", 1, "checkpoint"};
 
-// A new member of Observation must be added below (its checkpoint would lose it); the size changes with it.
-static_assert(sizeof(Observation) == 4 * sizeof(Eigen::Matrix3d) + 30 * sizeof(double));
-
-/// Scalars of a row, which may be undefined.
-template <class AnyRow>
-auto scalars(AnyRow& o) {
-  return std::array{&o.time,           &o.eps_vol,      &o.eps_dev,     &o.shear_path,       &o.nu,
-                    &o.P_star,         &o.s_dev,        &o.s_par,       &o.F_v,              &o.F_dev,
-                    &o.F_par,          &o.shape_strain, &o.shape_stress, &o.shape_fabric,    &o.lode_strain,
-                    &o.lode_stress,    &o.lode_fabric,  &o.C_r,         &o.C,                &o.C_star,
-                    &o.rattler_fraction, &o.mean_overlap, &o.E_kin,     &o.E_pot,            &o.W_box,
-                    &o.D_contact,      &o.D_background, &o.energy_residual, &o.inertial_number};
+/// Calls visit with each value of this type in the row (a reference to it), in the order of the table of its fields.
+template <class Value, class AnyRow, class Visit>
+void for_each_value(AnyRow& row, const Visit& visit) {
+  for_each_field<Observation>([&](const auto& field) {
+    if constexpr (std::is_same_v<ValueOf<Observation, decltype(field.access)>, Value>)
+      visit(std::invoke(field.access, row));
+  });
 }
 
-template <class AnyRow>
-auto tensors(AnyRow& o) {
-  return std::array{&o.strain.tensor, &o.stress.tensor, &o.stress_kinetic.tensor, &o.fabric.tensor};
+/// Likewise its tensors, of whatever kind.
+template <class AnyRow, class Visit>
+void for_each_tensor(AnyRow& row, const Visit& visit) {
+  for_each_field<Observation>([&](const auto& field) {
+    if constexpr (requires { std::invoke(field.access, row).tensor; }) visit(std::invoke(field.access, row).tensor);
+  });
 }
 
-/// segment, bits of the defined scalars, scalars (0 where undefined), tensors by rows.
+/// Whole numbers, bits of the defined scalars, scalars (0 where undefined), tensors by rows.
 void put_row(const Observation& row, NumberWriter& numbers) {
+  for_each_value<int>(row, [&](int value) { numbers.word(static_cast<std::uint64_t>(value)); });
   std::uint64_t defined = 0;
-  const auto values = scalars(row);
-  for (std::size_t i = 0; i < values.size(); ++i) defined |= std::uint64_t{!std::isnan(*values[i])} << i;
-  numbers.word(static_cast<std::uint64_t>(row.segment));
+  int bit = 0;
+  for_each_value<double>(row, [&](double value) { defined |= std::uint64_t{!std::isnan(value)} << bit++; });
   numbers.word(defined);
-  for (const double* value : values) numbers.number(std::isnan(*value) ? 0 : *value);
-  for (const auto* tensor : tensors(row)) {
-    for (int i = 0; i < 9; ++i) numbers.number((*tensor)(i / 3, i % 3));
-  }
+  for_each_value<double>(row, [&](double value) { numbers.number(std::isnan(value) ? 0 : value); });
+  for_each_tensor(row, [&](const Eigen::Matrix3d& tensor) {
+    for (int i = 0; i < 9; ++i) numbers.number(tensor(i / 3, i % 3));
+  });
 }
 
 Observation take_row(NumberReader& numbers) {
   Observation row;
-  row.segment = static_cast<int>(numbers.word());
+  for_each_value<int>(row, [&](int& value) { value = static_cast<int>(numbers.word()); });
   const std::uint64_t defined = numbers.word();
-  const auto values = scalars(row);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double value = numbers.number();
-    *values[i] = (defined >> i & 1) != 0 ? value : Observation::undefined;
-  }
-  for (auto* tensor : tensors(row)) {
-    for (int i = 0; i < 9; ++i) (*tensor)(i / 3, i % 3) = numbers.number();
-  }
+  int bit = 0;
+  for_each_value<double>(row, [&](double& value) {
+    value = numbers.number();
+    if ((defined >> bit++ & 1) == 0) value = Observation::undefined;
+  });
+  for_each_tensor(row, [&](Eigen::Matrix3d& tensor) {
+    for (int i = 0; i < 9; ++i) tensor(i / 3, i % 3) = numbers.number();
+  });
   return row;
 }
 

@@ -9,8 +9,7 @@ namespace {
 /// array of the packing's size, `optional_array` those that a resting state does not have.
 template <class AnyState, class Scalar, class Array, class OptionalArray>
 void for_each_number(AnyState& s, const Scalar& visit, const Array& array, const OptionalArray& optional_array) {
-  auto& m = s.material;
-  for (auto* x : {&m.density, &m.stiffness, &m.contact_viscosity, &m.background_viscosity}) visit(*x);
+  for_each_field<Material>([&](const auto& field) { visit(std::invoke(field.access, s.material)); });
   auto& e = s.ledger;
   for (auto* x : {&s.time, &e.W_box, &e.D_contact, &e.D_background, &e.E_start, &e.E_kin_start}) visit(*x);
   for (auto* x : {&s.sums.box_power, &s.sums.contact_power, &s.sums.E_pot, &s.sums.drag_power}) visit(*x);

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "model/files/digest.hpp"
-#include "model/files/probe_columns.hpp"
+#include "model/files/column_csv.hpp"
+#include "model/vocabulary/probe_row.hpp"
 #include "dem/runs/run_store.hpp"
 #include "model/files/durable_file.hpp"
-#include "dem/element_tests/path_row.hpp"
 #include "dem/statics/probe_rows.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -62,8 +62,7 @@ StepObserver PathProbes::observer() {
     const auto index = static_cast<std::size_t>(segment);
     const double length = length_before(index) + length_rate(segments_[index]) * e;
     if (length < plan_.every * static_cast<double>(done_) - kRounding) return;
-    synchronise(sim);
-    probe(sim.state, segment, e);
+    probe(sim.state(), segment, e);
     save();
   };
 }
@@ -83,7 +82,7 @@ void PathProbes::probe(const State& state, int segment, double e) {
     fill_path(row, segments_.empty() ? StraightSegment{} : segments_[static_cast<std::size_t>(segment)], segment,
                    e, sheared_before);
     if (!sheared) row.s_par = row.F_par = Observation::undefined;
-    lines_.push_back(probe_line(row));
+    lines_.push_back(csv_line(row));
   }
   const std::string place = fmt::format(
       "probe {}, at eps_dev = {:.4g}, nu = {:.4f}", done_,
@@ -99,7 +98,7 @@ void PathProbes::probe(const State& state, int segment, double e) {
 
 void PathProbes::finish(const State& end) {
   if (segments_.empty() && done_ == 0) probe(end, 0, 0);
-  std::string text = probe_header() + "\n";
+  std::string text = csv_header<ProbeRow>() + "\n";
   for (const std::string& line : lines_) text += line + "\n";
   write_durably(folder_ / "probes.csv", text);
 }

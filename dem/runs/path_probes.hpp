@@ -8,7 +8,7 @@
 
 #include "model/files/json_document.hpp"
 #include "dem/runs/probe_json.hpp"
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 
 namespace grainlaw::dem {
 

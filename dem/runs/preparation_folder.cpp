@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "model/files/fields_json.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/series_csv.hpp"
 #include "dem/runs/spec_file.hpp"
@@ -29,11 +30,9 @@ std::string kept_file(Branch branch, double nu) {
 }
 
 OrderedJson packing_to_json(const State& state, std::optional<double> size_width) {
-  return {{"seed", state.seed},
-          {"particles", state.packing.size()},
-          {"size_width", size_width ? OrderedJson(*size_width) : OrderedJson(nullptr)},
-          {"mean_radius", mean_radius(state.packing)},
-          {"stiffness", state.material.stiffness}};
+  return fields_to_json(PackingInfo{state.seed, static_cast<std::int64_t>(state.packing.size()),
+                                    size_width.value_or(Observation::undefined), mean_radius(state.packing),
+                                    state.material.stiffness});
 }
 
 PreparationFolder::PreparationFolder(std::filesystem::path folder, std::string key)

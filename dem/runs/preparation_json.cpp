@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/element_tests/quasi_static_test.hpp"
+#include "dem/element_tests/quasi_static.hpp"
+#include "model/files/fields_json.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -28,71 +29,14 @@ std::vector<StraightSegment> isotropic(double from, double to) {
       {from, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to < from), ExtentKind::target_nu, to}}});
 }
 
-const char* name_of(Precision precision) {
-  switch (precision) {
-    case Precision::full: return "double";
-    case Precision::reference: return "reference";
-    default: return "mixed";
-  }
-}
-
 }  // namespace
 
-void read_preparation(const Json& document, PreparationOptions& o) {
-  const auto take = [&](const char* key, auto& target) {
-    if (document.contains(key)) document[key].get_to(target);
-  };
-  take("particles", o.packing.particles);
-  take("size_width", o.packing.size_width);
-  take("mean_radius", o.packing.mean_radius);
-  take("density", o.packing.material.density);
-  take("stiffness", o.packing.material.stiffness);
-  take("contact_viscosity", o.packing.material.contact_viscosity);
-  take("background_viscosity", o.packing.material.background_viscosity);
-  take("time_step_fraction", o.engine.time_step_fraction);
-  take("skin", o.engine.skin);
-  take("portable_bits", o.engine.portable_bits);
-  take("strain_rate", o.drive.strain_rate);
-  take("quasi_static_step", o.drive.quasi_static_step);
-  take("nu_start", o.nu_start);
-  take("nu_max", o.nu_max);
-  take("rows", o.rows);
-  if (document.contains("nu_end")) o.nu_end = document["nu_end"].get<double>();
-  if (document.contains("precision")) {
-    const Json& name = document["precision"];
-    o.engine.precision = name == "double"      ? Precision::full
-                         : name == "reference" ? Precision::reference
-                                               : Precision::mixed;
-  }
-  if (document.contains("driving")) {
-    o.drive.profile = document["driving"] == "constant" ? Profile::constant : Profile::cosine;
-  }
-  if (document.contains("transport")) {
-    o.drive.transport = document["transport"] == "wall" ? Transport::wall : Transport::homogeneous;
-  }
-}
+void read_preparation(const Json& document, PreparationOptions& o) { read_given_fields(document, o); }
 
-OrderedJson preparation_to_json(const PreparationOptions& o) {
-  const Material& material = o.packing.material;
-  return {{"particles", o.packing.particles},
-          {"size_width", o.packing.size_width},
-          {"mean_radius", o.packing.mean_radius},
-          {"density", material.density},
-          {"stiffness", material.stiffness},
-          {"contact_viscosity", material.contact_viscosity},
-          {"background_viscosity", material.background_viscosity},
-          {"time_step_fraction", o.engine.time_step_fraction},
-          {"skin", o.engine.skin},
-          {"precision", name_of(o.engine.precision)},
-          {"portable_bits", o.engine.portable_bits},
-          {"strain_rate", o.drive.strain_rate},
-          {"quasi_static_step", o.drive.quasi_static_step},
-          {"driving", o.drive.profile == Profile::constant ? "constant" : "cosine"},
-          {"transport", o.drive.transport == Transport::wall ? "wall" : "homogeneous"},
-          {"rows", o.rows},
-          {"nu_start", o.nu_start},
-          {"nu_max", o.nu_max},
-          {"nu_end", o.nu_end.value_or(o.nu_start)}};
+OrderedJson preparation_to_json(const PreparationOptions& o, bool with_fixed) {
+  OrderedJson json = fields_to_json(o, with_fixed);
+  if (!o.nu_end) json["nu_end"] = o.nu_start;
+  return json;
 }
 
 double expected_steps(const PreparationOptions& o, const std::vector<StraightSegment>& segments) {

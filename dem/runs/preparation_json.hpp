@@ -11,8 +11,9 @@ namespace grainlaw::dem {
 /// Takes the keys that are present into `options`; the document has passed its schema.
 void read_preparation(const Json& document, PreparationOptions& options);
 
-/// All keys, defaults included; seed, kept states and threads are left out.
-OrderedJson preparation_to_json(const PreparationOptions& options);
+/// All keys, defaults included; kept states and threads are left out. `with_fixed`: also what results depend on besides the
+/// keys of SPEC and TEST, so that no two preparations that differ are written alike.
+OrderedJson preparation_to_json(const PreparationOptions& options, bool with_fixed = false);
 
 /// What no schema can say: order of the densities, kept densities on their branches, contacts not overdamped, a number
 /// of steps that can be finished. Sets nu_end when it is not given. Throws InvalidInput "NAME: KEY: ...".

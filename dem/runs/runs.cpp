@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "model/files/fields_json.hpp"
 #include "model/files/path_json.hpp"
 #include "dem/runs/preparation_json.hpp"
 #include "model/files/series_csv.hpp"
@@ -20,21 +23,12 @@ namespace fs = std::filesystem;
 
 /// A preparation as its tests depend on it: without rows and without the list of states that were kept on the way.
 Json packing_identity(const PreparationOptions& o) {
-  Json identity = preparation_to_json(o);
+  Json identity = preparation_to_json(o, true);
   if (o.drive.quasi_static_step == 0) {  // else rows are part of how the steps are cut
     identity.erase("rows");
     identity.erase("quasi_static_step");
   }
-  identity["seed"] = o.packing.seed;
-  identity["nu_gas"] = o.nu_gas;
-  identity["gas_compression_factor"] = o.gas_compression_factor;
-  identity["relax_tolerance"] = o.relax.tolerance;
-  identity["relax_max_passes"] = o.relax.max_passes;
   return identity;
-}
-
-OrderedJson cost_to_json(const RunCost& cost) {
-  return {{"steps", cost.steps}, {"time_step", cost.time_step}, {"seconds", cost.seconds}};
 }
 
 State start_state(const RunStore& store, const TestStart& start, const Path& path, const RunControl& control) {
@@ -70,13 +64,11 @@ Json test_request(const TestStart& start, const Path& path) {
     request["packing"] = packing_identity(start.preparation);
     return request;
   }
-  const Json all = preparation_to_json(start.preparation);
-  request["given"] = {{"sha256", start.given_digest}, {"relax", start.relax}};
-  for (const char* key : {"time_step_fraction", "skin", "precision", "portable_bits", "strain_rate", "driving",
-                          "transport", "density", "stiffness", "contact_viscosity", "background_viscosity"}) {
-    request["given"][key] = all[key];
-  }
-  if (start.preparation.drive.quasi_static_step > 0) request["given"]["quasi_static_step"] = all["quasi_static_step"];
+  Json& given = request["given"] = {{"sha256", start.given_digest}, {"relax", start.relax}};
+  given.update(Json(fields_to_json(start.preparation.packing.material)));
+  given.update(Json(fields_to_json(start.preparation.engine)));
+  given.update(Json(fields_to_json(start.preparation.drive)));
+  if (start.preparation.drive.quasi_static_step == 0) given.erase("quasi_static_step");
   return request;
 }
 
@@ -106,7 +98,7 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
                 {"packing", folder.packing(options.packing)},
                 {"states", folder.states()},
                 {"warnings", folder.warnings()},
-                {"cost", cost_to_json({0, 0, earlier + stopwatch.seconds()})},
+                {"cost", fields_to_json(RunCost{0, 0, earlier + stopwatch.seconds()})},
                 {"provenance", provenance("preparation", options.engine.threads, stopwatch)}});
   return store.find(key).value();
 }
@@ -154,25 +146,22 @@ Json ensure_test(const RunStore& store, const TestStart& start, const Path& path
                {{"kind", "test"},
                 {"packing", packing_to_json(end, width)},
                 {"warnings", warnings},
-                {"cost", cost_to_json({test.steps, test.time_step, earlier + stopwatch.seconds()})},
+                {"cost", fields_to_json(RunCost{test.steps, test.time_step, earlier + stopwatch.seconds()})},
                 {"provenance", provenance("element test", start.preparation.engine.threads, stopwatch)}});
   return store.find(key).value();
 }
 
 PackingInfo packing_from_record(const Json& record) {
-  const Json& packing = record.at("packing");
   PackingInfo info;
-  info.seed = packing.at("seed");
-  info.particles = packing.at("particles");
-  if (!packing.at("size_width").is_null()) info.size_width = packing.at("size_width");
-  info.mean_radius = packing.at("mean_radius");
-  info.stiffness = packing.at("stiffness");
+  read_fields(record.at("packing"), info);
+  if (std::isnan(info.size_width)) info.size_width = 0;  // of given spheres
   return info;
 }
 
 RunCost cost_from_record(const Json& record) {
-  const Json& cost = record.at("cost");
-  return {cost.at("steps"), cost.at("time_step"), cost.at("seconds")};
+  RunCost cost;
+  read_fields(record.at("cost"), cost);
+  return cost;
 }
 
 }  // namespace grainlaw::dem

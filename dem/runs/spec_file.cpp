@@ -36,7 +36,7 @@ TestRequest test_from_json(const Json& object, const std::vector<double>& densit
   TestRequest test;
   test.mode = object.value("mode", "");
   test.branch = branch_from_json(object);
-  test.role = role_from(object["role"]);
+  test.role = value_of<Role>(object["role"].get<std::string>(), "role");
   if (test.mode.empty() != object.contains("segments")) {
     refuse(test.mode.empty() ? ": misses what to do; give mode or segments"
                              : ": has mode and segments; give one of them");

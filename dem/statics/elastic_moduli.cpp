@@ -142,7 +142,7 @@ Observation observe_at_rest(State state, const Deviator<double>& N) {
   engine.precision = Precision::reference;
   engine.refuse_deep_overlaps = false;
   const CellMotion motion{state.packing.H, Eigen::Matrix3d::Zero(), Transport::homogeneous};
-  return observe(start_simulation(std::move(state), engine, motion), motion, N);
+  return observe(Simulation(std::move(state), engine, motion), motion, N);
 }
 
 void check_options(const Deviator<double>& N, const ProbeOptions& options) {

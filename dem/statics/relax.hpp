@@ -13,6 +13,11 @@ struct RelaxOptions {
   double tolerance = 1e-5;              ///< max net force over mean contact force [-]
   std::int64_t max_passes = 200000;     ///< force passes before giving up
 };
+constexpr auto fields_of(std::type_identity<RelaxOptions>) {
+  return std::tuple{Field{&RelaxOptions::tolerance, "relax_tolerance", "", "", "", Rule::fixed},
+                    Field{&RelaxOptions::max_passes, "relax_max_passes", "", "", "", Rule::fixed}};
+}
+static_assert(tells_every_member<RelaxOptions>());
 
 struct Relaxation {
   bool relaxed = false;            ///< criterion met (trivially without contacts)

@@ -24,9 +24,9 @@ constexpr double kSurelyJammed = 1e-3;  // P* from which so many contacts carry 
 constexpr double kMeanFieldFabric = 1.22;
 
 /// One row of a test, and what to say when it cannot be.
-class Row {
+class CheckedRow {
  public:
-  Row(const TestRecord& test, std::size_t number) : test_(test), number_(number), row_(test.rows[number]) {}
+  CheckedRow(const TestRecord& test, std::size_t number) : test_(test), number_(number), row_(test.rows[number]) {}
 
   void check(const Deviator<double>& N, const std::vector<StraightSegment>& path) const {
     check_finite();
@@ -123,7 +123,7 @@ class Row {
 void check_rows(const TestRecord& test) {
   const std::vector<StraightSegment> path = resolve(test.path);
   const Deviator<double> N = shear_direction(path);
-  for (std::size_t i = 0; i < test.rows.size(); ++i) Row(test, i).check(N, path);
+  for (std::size_t i = 0; i < test.rows.size(); ++i) CheckedRow(test, i).check(N, path);
 }
 
 [[noreturn]] void refuse(const TestRecord& test, const std::string& why) {

@@ -56,8 +56,12 @@ LawState<T> combination(const LawState<T>& y, double h, const std::array<LawStat
     if (a[i] == 0) continue;
     const double c = h * a[i];  // plain: a dual number times a dual number is three times the work
     for_each_part(
-        [c](const StatePart& part, auto& of_sum, const auto& of_k) {
-          if (part.has_rate) of_sum += of_k * c;
+        [c]<class Part>(const StatePart& part, Part& of_sum, const Part& of_k) {
+          if (!part.has_rate) return;
+          if constexpr (std::is_same_v<Part, T>)
+            of_sum += of_k * c;
+          else
+            for (Eigen::Index j = 0; j < of_sum.size(); ++j) of_sum(j) += of_k(j) * c;
         },
         sum, k[i]);
   }

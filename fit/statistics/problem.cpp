@@ -22,8 +22,6 @@ FreeParameter free_parameter(const std::string& name, double start) {
   return {name, start, info.lower, info.upper, scale};
 }
 
-std::string to_string(Loss loss) { return loss == Loss::huber ? "huber" : "squares"; }
-
 int row_count(const std::vector<ResidualBlock>& blocks) {
   int rows = 0;
   for (const ResidualBlock& block : blocks) rows += block.rows();

@@ -3,6 +3,7 @@
 // model - data with exact derivatives. No solver's header in here.
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -43,7 +44,7 @@ enum class Loss {
   squares,  ///< of the misfits
   huber,    ///< rows that are far off count by their distance; docs/theory/fit.md, section Huber's loss
 };
-std::string to_string(Loss loss);
+constexpr auto names_of(Loss) { return std::array{"squares", "huber"}; }
 
 struct Problem {
   std::vector<FreeParameter> parameters;

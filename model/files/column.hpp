@@ -1,64 +1,83 @@
 #pragma once
-// A column of a table of rows, declared once: title, unit, symbol, meaning, access. Tables are lists of columns.
+// The columns of a table of rows, which follow from the fields of the row (model/vocabulary/fields.hpp): one for each
+// number, six for each tensor, also for a deviator.
 
+#include <functional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "model/vocabulary/fields.hpp"
 #include "model/vocabulary/tensor.hpp"
 
 namespace grainlaw {
 
 template <class Row>
 struct Column {
-  std::string name;           ///< title without unit
-  std::string unit;           ///< empty: dimensionless
-  std::string symbol;         ///< the paper's symbol
-  std::string meaning;        ///< one line
-  double (*get)(const Row&);  ///< NaN: undefined
-  void (*set)(Row&, double);
-  bool required = false;  ///< a data set that is to be fitted must have it
+  std::string name;     ///< title without unit
+  std::string unit;     ///< empty: dimensionless
+  std::string symbol;   ///< the paper's symbol
+  std::string meaning;  ///< one line
+  Rule rule = Rule::plain;
+  bool whole = false;                        ///< an integer or yes and no, never undefined
+  std::function<double(const Row&)> get;     ///< NaN: undefined
+  std::function<void(Row&, double)> set;
 
   std::string title() const { return unit.empty() ? name : name + "[" + unit + "]"; }  ///< as in the header line
+  bool required() const { return rule != Rule::plain; }  ///< a file must have the column
+  bool defined() const { return whole || rule == Rule::needed_number; }  ///< with a number in every row
 };
 
+/// Component k of a symmetric tensor, both places of it when set.
+inline double component(const Eigen::Matrix3d& a, std::size_t k) {
+  return a(kComponentIndex[k][0], kComponentIndex[k][1]);
+}
+inline void set_component(Eigen::Matrix3d& a, std::size_t k, double value) {
+  a(kComponentIndex[k][0], kComponentIndex[k][1]) = a(kComponentIndex[k][1], kComponentIndex[k][0]) = value;
+}
+/// Of the tensor of a deviator. Its diagonal arrives as xx, yy, zz: the last one follows from the trace and is not set.
+inline double component(const Deviator<double>& q, std::size_t k) { return component(tensor_of<double>(q), k); }
+inline void set_component(Deviator<double>& q, std::size_t k, double value) {
+  if (k == 2) return;
+  Eigen::Matrix3d a = tensor_of<double>(q);
+  set_component(a, k, value);
+  a(2, 2) = -a(0, 0) - a(1, 1);
+  q = deviator<double>(a);
+}
+template <class Tensor>
+double component(const Tensor& a, std::size_t k) {
+  return component(a.tensor, k);
+}
+template <class Tensor>
+void set_component(Tensor& a, std::size_t k, double value) {
+  set_component(a.tensor, k, value);
+}
+
+/// In the order of the fields, which is that of writing.
 template <class Row>
-using Columns = std::vector<Column<Row>>;
-
-// Column<Row> wants plain functions; the template argument carries the member, which may be inherited.
-template <auto member, class Row>
-double get_member(const Row& row) {
-  return static_cast<double>(row.*member);
-}
-template <auto member, class Row>
-void set_member(Row& row, double value) {
-  row.*member = static_cast<std::remove_reference_t<decltype(row.*member)>>(value);
-}
-
-template <auto member, class Row>
-void add(Columns<Row>& columns, const char* name, const char* unit, const char* symbol, const char* meaning,
-         bool required = false) {
-  columns.push_back({name, unit, symbol, meaning, &get_member<member, Row>, &set_member<member, Row>, required});
-}
-
-template <auto member, std::size_t k, class Row>
-double get_component(const Row& row) {
-  return (row.*member).tensor(kComponentIndex[k][0], kComponentIndex[k][1]);
-}
-template <auto member, std::size_t k, class Row>
-void set_component(Row& row, double value) {
-  (row.*member).tensor(kComponentIndex[k][0], kComponentIndex[k][1]) = value;
-  (row.*member).tensor(kComponentIndex[k][1], kComponentIndex[k][0]) = value;
-}
-
-template <auto member, std::size_t k = 0, class Row>
-void add_tensor(Columns<Row>& columns, const std::string& name, const std::string& unit, const std::string& symbol,
-                const std::string& meaning, bool required = false) {
-  const std::string suffix = kComponentName[k];
-  columns.push_back({name + "_" + suffix, unit, symbol + "_" + suffix, meaning + ", component " + suffix,
-                     &get_component<member, k, Row>, &set_component<member, k, Row>, required});
-  if constexpr (k + 1 < kComponentName.size())
-    add_tensor<member, k + 1, Row>(columns, name, unit, symbol, meaning, required);
+const std::vector<Column<Row>>& columns_of() {
+  static const std::vector<Column<Row>> all = [] {
+    std::vector<Column<Row>> columns;
+    for_each_field<Row>([&](const auto& field) {
+      using Value = ValueOf<Row, decltype(field.access)>;
+      const auto access = field.access;
+      if constexpr (std::is_arithmetic_v<Value>) {
+        columns.push_back({field.name, field.unit, field.symbol, field.meaning, field.rule, std::is_integral_v<Value>,
+                           [access](const Row& row) { return static_cast<double>(std::invoke(access, row)); },
+                           [access](Row& row, double value) { std::invoke(access, row) = static_cast<Value>(value); }});
+      } else {
+        for (std::size_t k = 0; k < kComponentName.size(); ++k) {
+          const std::string suffix = kComponentName[k];
+          columns.push_back({std::string(field.name) + "_" + suffix, field.unit, std::string(field.symbol) + "_" + suffix,
+                             std::string(field.meaning) + ", component " + suffix, field.rule, false,
+                             [access, k](const Row& row) { return component(std::invoke(access, row), k); },
+                             [access, k](Row& row, double value) { set_component(std::invoke(access, row), k, value); }});
+        }
+      }
+    });
+    return columns;
+  }();
+  return all;
 }
 
 }  // namespace grainlaw

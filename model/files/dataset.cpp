@@ -5,6 +5,7 @@
 #include <set>
 
 #include "model/files/digest.hpp"
+#include "model/files/fields_json.hpp"
 #include "model/files/path_json.hpp"
 #include "model/files/schema.hpp"
 #include "model/files/series_csv.hpp"
@@ -16,20 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-OrderedJson packing_to_json(const PackingInfo& packing) {
-  return {{"seed", packing.seed},
-          {"particles", packing.particles},
-          {"size_width", packing.size_width},
-          {"mean_radius", packing.mean_radius},
-          {"stiffness", packing.stiffness}};
-}
-
 /// What the digest of a data set covers of a test.
 OrderedJson identity(const DatasetTest& test) {
   OrderedJson identity{{"name", test.record.name},
                        {"role", to_string(test.record.role)},
                        {"path", path_to_json(test.record.path)},
-                       {"packing", packing_to_json(test.record.packing)},
+                       {"packing", fields_to_json(test.record.packing)},
                        {"sha256", test.sha256}};
   if (!test.probes_sha256.empty()) identity["probes_sha256"] = test.probes_sha256;
   return identity;
@@ -47,22 +40,12 @@ std::vector<std::uint64_t> seeds_of(const Dataset& dataset) {
   return {seeds.begin(), seeds.end()};
 }
 
-PackingInfo packing_from(const Json& object) {
-  PackingInfo packing;
-  packing.seed = object["seed"];
-  packing.particles = object.value("particles", std::int64_t{0});
-  packing.size_width = object.value("size_width", 0.0);
-  packing.mean_radius = object["mean_radius"];
-  packing.stiffness = object["stiffness"];
-  return packing;
-}
-
 DatasetTest read_test(const Json& object, const fs::path& folder, const std::string& index, const std::string& place) {
   DatasetTest test;
   test.record.name = object["name"];
-  test.record.role = role_from(object["role"]);
+  test.record.role = value_of<Role>(object["role"].get<std::string>(), "role");
   test.record.path = path_from_json(object["path"], index, place + ".path.", true);
-  test.record.packing = packing_from(object["packing"]);
+  read_given_fields(object["packing"], test.record.packing);
   const fs::path file = folder / (test.record.name + ".csv");
   test.record.rows = read_series(file, test.record.path, test.record.packing);
   test.sha256 = sha256_of_file(file);
@@ -79,10 +62,7 @@ DatasetTest read_test(const Json& object, const fs::path& folder, const std::str
                                    probes.string(), index));
   }
   test.run = object.value("run", "");
-  if (object.contains("cost")) {
-    const Json& cost = object["cost"];
-    test.cost = {cost.value("steps", std::uint64_t{0}), cost.value("time_step", 0.0), cost.value("seconds", 0.0)};
-  }
+  if (object.contains("cost")) read_given_fields(object["cost"], test.cost);
   if (object.contains("warnings")) test.warnings = object["warnings"].get<std::vector<std::string>>();
   return test;
 }
@@ -135,7 +115,7 @@ void write_dataset_index(const fs::path& folder, Dataset& dataset) {
     OrderedJson object = identity(test);
     object["rows"] = test.record.rows.size();
     if (!test.run.empty()) object["run"] = test.run;
-    object["cost"] = {{"steps", test.cost.steps}, {"time_step", test.cost.time_step}, {"seconds", test.cost.seconds}};
+    object["cost"] = fields_to_json(test.cost);
     object["warnings"] = test.warnings;
     tests.push_back(object);
   }

@@ -18,6 +18,11 @@ struct RunCost {
   double time_step = 0;     ///< dt [s]
   double seconds = 0;       ///< wall time [s]
 };
+constexpr auto fields_of(std::type_identity<RunCost>) {
+  return std::tuple{Field{&RunCost::steps, "steps"}, Field{&RunCost::time_step, "time_step", "s"},
+                    Field{&RunCost::seconds, "seconds", "s"}};
+}
+static_assert(tells_every_member<RunCost>());
 
 struct DatasetTest {
   TestRecord record;

@@ -7,12 +7,7 @@
 namespace grainlaw {
 namespace {
 
-Mode mode_from(const std::string& text) {
-  for (const Mode mode : {Mode::ISO, Mode::UNI, Mode::D2, Mode::D3}) {
-    if (to_string(mode) == text) return mode;
-  }
-  throw InvalidInput(fmt::format("mode: '{}' is none of ISO, UNI, D2, D3", text));
-}
+Mode mode_from(const Json& object) { return value_of<Mode>(object["mode"].get<std::string>(), "mode"); }
 
 Eigen::Matrix3d matrix_from(const Json& rows) {
   Eigen::Matrix3d m;
@@ -46,7 +41,7 @@ void read_direction(const Json& object, const std::string& where, bool both, Pat
   if (has_mode && has_tensor && !both)
     throw InvalidInput(fmt::format("{}: has mode and {}; give one of them", where, tensor));
   if (!has_tensor) {
-    segment.mode = mode_from(object["mode"]);
+    segment.mode = mode_from(object);
     segment.direction = direction_of(segment.mode, object.value("axes", "xyz"), object.value("reverse", false));
     return;
   }
@@ -54,7 +49,7 @@ void read_direction(const Json& object, const std::string& where, bool both, Pat
     if (object.contains(key))
       throw InvalidInput(fmt::format("{}.{}: belongs to a mode; write it into {}", where, key, tensor));
   }
-  segment.mode = has_mode ? mode_from(object["mode"]) : Mode::tensor;
+  segment.mode = has_mode ? mode_from(object) : Mode::tensor;
   const Eigen::Matrix3d L = matrix_from(object[tensor]);
   const Eigen::Matrix3d D = (L + L.transpose()) / 2;
   if (object.contains("rate_tensor") && (L - L.transpose()).norm() != 0)
@@ -74,10 +69,7 @@ std::vector<Condition> conditions_from(const Json& free) {
     for (int i = 0; i < 6; ++i) {
       if (item.key() == kComponentName.at(static_cast<std::size_t>(i))) condition.free = i;
     }
-    for (const auto quantity :
-         {Condition::Quantity::stress, Condition::Quantity::P_star, Condition::Quantity::stress_ratio}) {
-      if (to_string(quantity) == item.value()["quantity"]) condition.quantity = quantity;
-    }
+    condition.quantity = value_of<Condition::Quantity>(item.value()["quantity"].get<std::string>(), "quantity");
     condition.rate = item.value().value("rate", 0.0);
     conditions.push_back(condition);
   }
@@ -91,15 +83,9 @@ OrderedJson conditions_to_json(const std::vector<Condition>& conditions) {
   return object;
 }
 
-constexpr ExtentKind kExtentKinds[] = {ExtentKind::eps_dev,       ExtentKind::eps_vol,
-                                       ExtentKind::target_nu,     ExtentKind::target_eps_dev,
-                                       ExtentKind::target_P_star, ExtentKind::target_stress_ratio};
-
 void read_extent(const Json& object, PathSegment& segment) {
   const auto extent = object["extent"].items().begin();
-  for (const ExtentKind kind : kExtentKinds) {
-    if (to_string(kind) == extent.key()) segment.extent_kind = kind;
-  }
+  segment.extent_kind = value_of<ExtentKind>(extent.key(), "extent");
   segment.extent = extent.value().get<double>();
 }
 
@@ -134,10 +120,8 @@ void append_segment(const Json& object, const std::string& where, bool both, std
   if (has_cycles && object.contains("extent"))
     throw InvalidInput(fmt::format("{}: has extent and cycles; give one of them", where));
   if (!has_cycles && !object.contains("extent"))
-    throw InvalidInput(fmt::format(
-        "{}: misses the key 'extent'; give one of eps_dev, eps_vol, target_nu, target_eps_dev, target_P_star, "
-        "target_stress_ratio, or cycles",
-        where));
+    throw InvalidInput(fmt::format("{}: misses the key 'extent'; give one of {}, or cycles", where,
+                                   list_of_names<ExtentKind>()));
   if (has_cycles && !segment.conditions.empty())
     throw InvalidInput(
         fmt::format("{}.cycles: are of strain; give segments with an extent where rates are free", where));
@@ -152,7 +136,7 @@ void append_segment(const Json& object, const std::string& where, bool both, std
 }  // namespace
 
 Branch branch_from_json(const Json& object) {
-  return object.value("branch", "unloading") == "loading" ? Branch::loading : Branch::unloading;
+  return value_of<Branch>(object.value("branch", to_string(Branch::unloading)), "branch");
 }
 
 std::vector<PathSegment> segments_from_json(const Json& segments, const std::string& name, const std::string& place,

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "model/files/column_csv.hpp"
-#include "model/files/series_columns.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/durable_file.hpp"
 #include "model/vocabulary/error.hpp"
@@ -22,7 +21,7 @@ class SeriesReader {
  public:
   SeriesReader(const std::filesystem::path& file, const Path& path, const PackingInfo& packing)
       : reader_(file),
-        columns_(matched(reader_, observation_columns())),
+        columns_(matched<Observation>(reader_)),
         path_(path),
         stress_unit_(packing.stress_unit()),
         N_(shear_direction(resolve(path))) {
@@ -46,17 +45,13 @@ class SeriesReader {
 
  private:
   void set(Observation& row, const Column<Observation>& column, double value) const {
-    const bool may_be_undefined = column.name == "C_star" || !column.required;
-    if (std::isnan(value) && (!may_be_undefined || column.name == "segment")) {
-      reader_.refuse(column.title(), "is empty; this column needs a number in every row");
-    }
-    if (column.name == "segment" &&
+    if (column.name == "segment" && !std::isnan(value) &&
         !(value >= 0 && value < static_cast<double>(std::max<std::size_t>(1, path_.segments.size())) &&
           value == std::trunc(value))) {
       reader_.refuse(column.title(),
                      fmt::format("{} is no segment of the path, which has {}", value, path_.segments.size()));
     }
-    column.set(row, value);
+    set_value(reader_, row, column, value);
   }
 
   /// Fills `value` when its column is absent; otherwise it must agree with `computed`.
@@ -74,16 +69,19 @@ class SeriesReader {
     if (!(row.nu > 0 && row.nu <= 0.9))
       reader_.refuse("nu", fmt::format("{} is no volume fraction in (0, 0.9]", row.nu));
     const bool first = rows_.empty();
-    const Deviator<double> strain = deviator<double>(row.strain.tensor);
-    derive("eps_vol", row.eps_vol, row.strain.tensor.trace(), 1e-3);
-    derive("eps_dev", row.eps_dev, strain.norm(), 1e-3);
+    Observation derived;  // what the given tensors say
+    set_strain(derived, row.strain);
+    derive("eps_vol", row.eps_vol, derived.eps_vol, 1e-3);
+    derive("eps_dev", row.eps_dev, derived.eps_dev, 1e-3);
     const double nu_0 = first ? row.nu * std::exp(row.eps_vol) : nu_0_;
     if (first) nu_0_ = nu_0;
     double nu = row.nu;
     derive("nu", nu, nu_0 * std::exp(-row.eps_vol), 1e-3);
     if (!given_.contains("shear_path")) {
       row.shear_path =
-          first ? 0 : rows_.back().shear_path + (strain - deviator<double>(rows_.back().strain.tensor)).norm();
+          first ? 0
+                : rows_.back().shear_path +
+                      (deviator<double>(row.strain.tensor) - deviator<double>(rows_.back().strain.tensor)).norm();
     }
     // a corner of the path may be seen twice, at the end of one segment and the start of the next
     const bool corner = !first && row.segment > rows_.back().segment && row.time == rows_.back().time;
@@ -92,16 +90,13 @@ class SeriesReader {
     if (!first && row.segment < rows_.back().segment) reader_.refuse("segment", "falls behind that of the row before");
 
     const double P = row.stress.tensor.trace() / 3;
-    const Deviator<double> sigma = deviator<double>(row.stress.tensor), F = deviator<double>(row.fabric.tensor);
-    const bool sheared = N_.norm() > 0;
+    set_ratios(derived, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N_);
     derive("P_star", row.P_star, P / stress_unit_, 1e-9);
-    if (P > 0) {
-      derive("s_dev", row.s_dev, sigma.norm() / P, 1e-3);
-      if (sheared) derive("s_par", row.s_par, sigma.dot(N_) / P, 1e-3);
-    }
+    derive("s_dev", row.s_dev, derived.s_dev, 1e-3);
+    derive("s_par", row.s_par, derived.s_par, 1e-3);
     derive("F_v", row.F_v, row.fabric.tensor.trace(), 1e-3);
-    derive("F_dev", row.F_dev, F.norm(), 1e-3);
-    if (sheared) derive("F_par", row.F_par, F.dot(N_), 1e-3);
+    derive("F_dev", row.F_dev, derived.F_dev, 1e-3);
+    derive("F_par", row.F_par, derived.F_par, 1e-3);
   }
 
   CsvReader reader_;
@@ -116,7 +111,7 @@ class SeriesReader {
 
 }  // namespace
 
-std::string series_text(const std::vector<Observation>& rows) { return table_text(rows, observation_columns()); }
+std::string series_text(const std::vector<Observation>& rows) { return table_text(rows); }
 
 void write_series(const std::filesystem::path& file, const std::vector<Observation>& rows) {
   write_durably(file, series_text(rows));

@@ -119,54 +119,6 @@ std::vector<StraightSegment> resolve_known(const Path& path) {
 
 }  // namespace
 
-std::string to_string(Mode mode) {
-  switch (mode) {
-    case Mode::ISO:
-      return "ISO";
-    case Mode::UNI:
-      return "UNI";
-    case Mode::D2:
-      return "D2";
-    case Mode::D3:
-      return "D3";
-    case Mode::tensor:
-      break;
-  }
-  return "tensor";
-}
-
-std::string to_string(Branch branch) { return branch == Branch::loading ? "loading" : "unloading"; }
-
-std::string to_string(ExtentKind kind) {
-  switch (kind) {
-    case ExtentKind::eps_dev:
-      return "eps_dev";
-    case ExtentKind::eps_vol:
-      return "eps_vol";
-    case ExtentKind::target_nu:
-      return "target_nu";
-    case ExtentKind::target_eps_dev:
-      return "target_eps_dev";
-    case ExtentKind::target_P_star:
-      return "target_P_star";
-    case ExtentKind::target_stress_ratio:
-      break;
-  }
-  return "target_stress_ratio";
-}
-
-std::string to_string(Condition::Quantity quantity) {
-  switch (quantity) {
-    case Condition::Quantity::stress:
-      return "stress";
-    case Condition::Quantity::P_star:
-      return "P_star";
-    case Condition::Quantity::stress_ratio:
-      break;
-  }
-  return "stress_ratio";
-}
-
 std::string free_name(const Condition& condition) {
   return condition.free == Condition::volume ? "volume" : kComponentName.at(static_cast<std::size_t>(condition.free));
 }

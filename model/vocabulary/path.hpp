@@ -11,19 +11,22 @@
 #include <string>
 #include <vector>
 
+#include "model/vocabulary/enum_names.hpp"
 #include "model/vocabulary/tensor.hpp"
 
 namespace grainlaw {
 
 enum class Mode { ISO, UNI, D2, D3, tensor };  ///< `tensor`: the direction is given by the user
-enum class Branch { loading, unloading };      ///< branch of the isotropic preparation that a state was kept on
+constexpr auto names_of(Mode) { return std::array{"ISO", "UNI", "D2", "D3", "tensor"}; }
+
+enum class Branch { loading, unloading };  ///< branch of the isotropic preparation that a state was kept on
+constexpr auto names_of(Branch) { return std::array{"loading", "unloading"}; }
 
 /// What ends a segment: strain added (eps_dev, eps_vol) or a value reached; the last two are known to the law only.
 enum class ExtentKind { eps_dev, eps_vol, target_nu, target_eps_dev, target_P_star, target_stress_ratio };
-
-std::string to_string(Mode mode);
-std::string to_string(Branch branch);
-std::string to_string(ExtentKind kind);
+constexpr auto names_of(ExtentKind) {
+  return std::array{"eps_dev", "eps_vol", "target_nu", "target_eps_dev", "target_P_star", "target_stress_ratio"};
+}
 
 /// Strain-rate direction of a mode as printed in section 1.2 of the paper (compression of z), reversed on request.
 /// `axes` says which box axis plays the role of the paper's x, y and z, e.g. "xyz" or "yzx". Not for Mode::tensor.
@@ -39,7 +42,7 @@ struct Condition {
   double rate = 0;  ///< compression positive, 0 holds the quantity [-]
 };
 
-std::string to_string(Condition::Quantity quantity);
+constexpr auto names_of(Condition::Quantity) { return std::array{"stress", "P_star", "stress_ratio"}; }
 
 /// "xx" ... "xy", "volume".
 std::string free_name(const Condition& condition);
@@ -54,7 +57,7 @@ struct PathSegment {
   ExtentKind extent_kind = ExtentKind::eps_dev;  ///< what `extent` measures
   double extent = 0;  ///< magnitude of deviatoric or volumetric strain added, or the value to reach [-]
   Eigen::Matrix3d spin = Eigen::Matrix3d::Zero();  ///< W, antisymmetric [-]
-  std::vector<Condition> conditions = {};               ///< mixed control; none: D is all there is
+  std::vector<Condition> conditions = {};          ///< mixed control; none: D is all there is
 };
 
 /// Whether the law decides where the segment leads: it has conditions or ends at a target of the law.

@@ -1,7 +1,5 @@
 #include "model/vocabulary/test_record.hpp"
 
-#include "model/vocabulary/error.hpp"
-
 namespace grainlaw {
 namespace {
 
@@ -12,18 +10,6 @@ const Eigen::Matrix3d* single_direction(const TestRecord& test) {
 bool is_isotropic(const Eigen::Matrix3d& d) { return deviatoric_norm(d) <= 1e-12 * d.norm(); }
 
 }  // namespace
-
-std::string to_string(Role role) {
-  if (role == Role::calibration) return "calibration";
-  return role == Role::validation ? "validation" : "description";
-}
-
-Role role_from(const std::string& name) {
-  for (const Role role : {Role::calibration, Role::validation, Role::description}) {
-    if (name == to_string(role)) return role;
-  }
-  throw InvalidInput("role: '" + name + "' is none; give calibration, validation or description");
-}
 
 bool is_isotropic_loading(const TestRecord& test) {
   const auto* d = single_direction(test);

@@ -16,10 +16,7 @@ enum class Role {
   validation,   ///< never shown to a fit
   description,  ///< fitted by laws of its own (Table 2's UNI and D3), which the calibrated law does not read
 };
-
-std::string to_string(Role role);
-/// Throws InvalidInput for a name that is none.
-Role role_from(const std::string& name);
+constexpr auto names_of(Role) { return std::array{"calibration", "validation", "description"}; }
 
 /// What a reader of a series must know about the packing it came from.
 struct PackingInfo {
@@ -31,6 +28,12 @@ struct PackingInfo {
 
   double stress_unit() const { return stiffness / (2 * mean_radius); }  ///< k/(2<r>) = stress of P* = 1 [Pa]
 };
+constexpr auto fields_of(std::type_identity<PackingInfo>) {
+  using P = PackingInfo;
+  return std::tuple{Field{&P::seed, "seed"}, Field{&P::particles, "particles"}, Field{&P::size_width, "size_width"},
+                    Field{&P::mean_radius, "mean_radius", "m"}, Field{&P::stiffness, "stiffness", "kg/s^2"}};
+}
+static_assert(tells_every_member<PackingInfo>());
 
 struct TestRecord {
   std::string name;  ///< file name of the series without its extension; letters, digits, '.', '-', '_'

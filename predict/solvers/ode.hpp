@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "model/vocabulary/fields.hpp"
+
 namespace grainlaw::predict {
 
 enum class Method { adams, bdf };
@@ -49,5 +51,15 @@ struct SolverStatistics {
   long restarts = 0;   ///< initialisations: of a path, one for each segment entered and each event in it
   double seconds = 0;  ///< wall time of the integration [s]
 };
+constexpr auto fields_of(std::type_identity<SolverStatistics>) {
+  using S = SolverStatistics;
+  return std::tuple{Field{&S::steps, "steps"},
+                    Field{&S::rhs_evaluations, "rhs_evaluations"},
+                    Field{&S::error_test_failures, "error_test_failures"},
+                    Field{&S::nonlinear_iterations, "nonlinear_iterations"},
+                    Field{&S::restarts, "restarts"},
+                    Field{&S::seconds, "seconds", "s"}};
+}
+static_assert(tells_every_member<SolverStatistics>());
 
 }  // namespace grainlaw::predict

@@ -10,6 +10,7 @@
 
 #include "model/vocabulary/error.hpp"
 #include "predict/segment_law.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "predict/solvers/dormand_prince.hpp"
 #include "predict/solvers/runge_kutta.hpp"
 
@@ -39,21 +40,6 @@ int order_of(Integrator integrator) {
 }
 
 }  // namespace
-
-std::string to_string(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::adams:
-      return "adams";
-    case Integrator::bdf:
-      return "bdf";
-    case Integrator::dopri_5:
-      return "dopri_5";
-    case Integrator::euler:
-      return "euler";
-    default:
-      return fmt::format("erk_{}", order_of(integrator));
-  }
-}
 
 struct Walker::Impl {
   const LawParameters<double>& parameters;

@@ -3,10 +3,10 @@
 // the study of work against precision compares. Set up once, walked many times; and batches of such paths over the cores.
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "model/law.hpp"
+#include "model/vocabulary/enum_names.hpp"
 #include "model/vocabulary/path.hpp"
 #include "model/vocabulary/run_control.hpp"
 
@@ -15,11 +15,10 @@ namespace grainlaw::predict {
 /// adams, bdf: CVODE; erk_n: explicit Runge-Kutta of order n by ARKODE, both with error control in the unknowns of
 /// segment_law.hpp; dopri_5: the order 5 of these inlined (dormand_prince.hpp). euler: forward Euler in equal substeps, in P, sigma', F' themselves, as in common user materials.
 enum class Integrator { adams, bdf, erk_2, erk_3, erk_4, erk_5, erk_6, erk_8, dopri_5, euler };
-inline constexpr Integrator kIntegrators[] = {
-    Integrator::adams, Integrator::bdf,   Integrator::erk_2, Integrator::erk_3,   Integrator::erk_4,
-    Integrator::erk_5, Integrator::erk_6, Integrator::erk_8, Integrator::dopri_5, Integrator::euler};
-
-std::string to_string(Integrator integrator);
+constexpr auto names_of(Integrator) {
+  return std::array{"adams", "bdf", "erk_2", "erk_3", "erk_4", "erk_5", "erk_6", "erk_8", "dopri_5", "euler"};
+}
+inline constexpr auto kIntegrators = kValues<Integrator>;
 
 struct Walk {
   std::vector<LawState<double>> ends;  ///< state at the end of each segment

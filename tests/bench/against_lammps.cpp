@@ -28,15 +28,14 @@ struct Result {
 Result run_engine(const dem::State& state, const dem::EngineOptions& options, int steps) {
   bench::Sheared shear = bench::start_shear(state, options);
   dem::Simulation& sim = shear.sim;
-  const std::uint64_t rebuilds = sim.rebuilds;
+  const std::uint64_t rebuilds = sim.rebuilds();
   Result result;
   result.seconds = advance(shear, steps);
-  dem::synchronise(sim);
   const Observation seen = dem::observe(sim, motion_after(shear, steps), Deviator<double>::Zero());
   result.P_star = seen.P_star;
   result.C_star = seen.C_star;
   result.E_pot = seen.E_pot;
-  result.steps_of_a_list = static_cast<double>(steps) / static_cast<double>(sim.rebuilds - rebuilds + 1);
+  result.steps_of_a_list = static_cast<double>(steps) / static_cast<double>(sim.rebuilds() - rebuilds + 1);
   return result;
 }
 
@@ -93,7 +92,7 @@ Result run_lammps(const fs::path& folder, const dem::State& state, const dem::Dr
   plain.precision = dem::Precision::reference;
   dem::CellMotion still;
   still.H = end.packing.H;
-  result.E_pot = dem::start_simulation(end, plain, still).state.sums.E_pot;
+  result.E_pot = dem::Simulation(end, plain, still).state().sums.E_pot;
   result.C_star = number_after(log, " M4 ") / number_after(log, " N4 ");
   result.steps_of_a_list =
       steps / (number_after(log.substr(loop, log.find("run 0") - loop), "Neighbor list builds = ") + 1);
@@ -132,7 +131,7 @@ int main(int argc, char** argv) try {
       results[name] = run_engine(state, options, steps);
     }
     const bench::Sheared path = bench::start_shear(state, options);
-    results["lammps"] = run_lammps(folder / "lammps", state, path.drive, path.sim.dt, steps, cores);
+    results["lammps"] = run_lammps(folder / "lammps", state, path.drive, path.sim.dt(), steps, cores);
     for (const auto& [name, r] : results) {
       const std::string id = fmt::format("{}.N{}.nu{:.2f}", name, size, nu);
       fmt::print("rate.{} {:.2f}\nP_star.{} {:.9g}\nC_star.{} {:.6g}\nsteps_of_a_list.{} {:.0f}\n", id,

@@ -55,18 +55,18 @@ inline Sheared start_shear(const dem::State& state, const dem::EngineOptions& op
   how.profile = dem::Profile::constant;
   how.strain_rate = kRate;
   const dem::Drive drive = dem::make_drive(resolve(path)[0], how, state.packing.H);
-  return {drive, dem::start_simulation(state, options, dem::motion_at(drive, 0))};
+  return {drive, dem::Simulation(state, options, dem::motion_at(drive, 0))};
 }
 
 inline dem::CellMotion motion_after(const Sheared& shear, double steps) {
-  return dem::motion_at(shear.drive, steps * shear.sim.dt);
+  return dem::motion_at(shear.drive, steps * shear.sim.dt());
 }
 
 /// Returns what it took. [s]
 inline double advance(Sheared& shear, int steps) {
   const auto began = std::chrono::steady_clock::now();
   for (const int end = shear.step + steps; shear.step < end; ++shear.step) {
-    dem::advance(shear.sim, motion_after(shear, shear.step + 0.5), motion_after(shear, shear.step + 1));
+    shear.sim.advance(motion_after(shear, shear.step + 0.5), motion_after(shear, shear.step + 1));
   }
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
@@ -75,8 +75,7 @@ inline double advance(Sheared& shear, int steps) {
 inline dem::State warmed_up(const dem::State& state, int steps) {
   Sheared shear = start_shear(state, {});
   advance(shear, steps);
-  dem::synchronise(shear.sim);
-  dem::State warm = std::move(shear.sim.state);
+  dem::State warm = shear.sim.take_state();
   for (auto* a : {&warm.ax, &warm.ay, &warm.az, &warm.ref_x, &warm.ref_y, &warm.ref_z}) a->clear();
   return warm;
 }

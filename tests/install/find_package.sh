@@ -8,7 +8,7 @@ cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 cmake --install "$build" --prefix "$PWD/first" >log || fail "$(cat log)"
 mv first moved
 for file in bin/grainlaw lib/libgrainlaw_{model,dem,fit,predict}.a lib/cmake/grainlaw/grainlaw-config.cmake \
-  include/grainlaw/dem/element_test.hpp share/doc/grainlaw/{LICENSE,CITATION.cff,README.md} \
+  include/grainlaw/dem/element_tests/element_run.hpp share/doc/grainlaw/{LICENSE,CITATION.cff,README.md} \
   share/doc/grainlaw/docs/formats.md share/doc/grainlaw/docs/schemas/spec.schema.json; do
   [[ -s moved/$file ]] || fail "not installed: $file"
 done

@@ -50,12 +50,13 @@ Eigen::Matrix3d symmetric(double xx, double yy, double zz, double xy, double xz,
 Seen seen_by_engine(const dem::State& state, const dem::CellMotion& motion, bool drag) {
   dem::EngineOptions in_double;
   in_double.precision = dem::Precision::full;
-  const dem::Simulation sim = dem::start_simulation(state, in_double, motion);
+  dem::Simulation sim(state, in_double, motion);
   const Observation row = dem::observe(sim, motion, {});
-  const dem::Packing& p = sim.state.packing;
+  const dem::Packing& p = sim.state().packing;
+  const std::vector<dem::Row> force = dem::scene::contact_forces(state, motion);
   Seen seen;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Eigen::Vector3d contact_force(sim.force[i][0], sim.force[i][1], sim.force[i][2]);
+    const Eigen::Vector3d contact_force(force[i][0], force[i][1], force[i][2]);
     seen.force.push_back(drag ? dem::scene::force_on(sim, i) : contact_force);
   }
   const auto n = static_cast<double>(p.size());

@@ -23,7 +23,7 @@
 #include <numbers>
 
 #include "dem/engine/averages.hpp"
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "tests/referee/lammps.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"
@@ -63,9 +63,8 @@ Series run_engine(const dem::State& state, const Course& course, int steps) {
   const Deviator<double> N = shear_direction({segment});
   Series series;
   const auto test = dem::run_element_test(state, {segment}, options, {}, [&](dem::Simulation& sim, int, double) {
-    if (sim.state.step % static_cast<std::uint64_t>(steps / kRows) != 0) return;
-    dem::synchronise(sim);
-    const Observation row = dem::observe(sim, dem::motion_at(drive, sim.state.time), N);
+    if (sim.step() % static_cast<std::uint64_t>(steps / kRows) != 0) return;
+    const Observation row = dem::observe(sim, dem::motion_at(drive, sim.time()), N);
     series.push_back({row.P_star, row.s_par, row.C_star});
   });
   EXPECT_EQ(test.steps, static_cast<std::uint64_t>(steps));

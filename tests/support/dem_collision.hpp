@@ -40,7 +40,7 @@ inline Outcome collide(const Encounter& given) {
   const double shortest = min_collision_time(state.packing, given.material);
   Simulation sim = start(std::move(state), dt / shortest);
 
-  const Packing& p = sim.state.packing;
+  const Packing& p = sim.state().packing;
   const auto separation = [&] {
     Eigen::Vector3d s = fraction(p, 0) - fraction(p, 1);
     s.array() -= s.array().round();

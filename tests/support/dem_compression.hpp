@@ -37,12 +37,12 @@ inline EnergyAccount compress(const State& state, double steps_per_collision, co
   const StraightSegment segment =
       segment_of(direction.asDiagonal(), -std::log(1 - kCompression), volume_fraction(state.packing));
   run_along(sim, make_drive(segment, options, state.packing.H));
-  const Ledger& ledger = sim.state.ledger;
+  const Ledger& ledger = sim.state().ledger;
   EXPECT_GE(ledger.D_contact, 0);
   EXPECT_GE(ledger.D_background, 0);
   EXPECT_GT(ledger.W_box, 0) << "compression of a jammed packing costs work";
   const double lost = ledger.D_contact + ledger.D_background;
-  const double change = sim.state.sums.E_pot + kinetic_energy(sim.state.packing) - ledger.E_start;
+  const double change = sim.state().sums.E_pot + kinetic_energy(sim.state().packing) - ledger.E_start;
   return {lost, ledger.W_box - change - lost};
 }
 

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "dem/engine/neighbour_list.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem::scene {

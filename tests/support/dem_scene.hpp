@@ -121,8 +121,8 @@ inline double rounding(double in_double) {
 
 /// One step with the state's arrays brought up to date.
 inline void step(Simulation& sim, const CellMotion& half, const CellMotion& end) {
-  advance(sim, half, end);
-  synchronise(sim);
+  sim.advance(half, end);
+  sim.state();
 }
 
 /// The state made ready in a cell at rest, whatever its overlaps. The forces are made anew.
@@ -134,13 +134,13 @@ inline Simulation start(State state, double time_step_fraction = 0.02, int threa
   options.time_step_fraction = time_step_fraction;
   options.threads = threads;
   options.refuse_deep_overlaps = false;
-  return start_simulation(std::move(state), options, motion);
+  return Simulation(std::move(state), options, motion);
 }
 
 inline void advance_at_rest(Simulation& sim, std::int64_t steps) {
-  const CellMotion motion = at_rest(sim.state);
-  for (std::int64_t k = 0; k < steps; ++k) advance(sim, motion, motion);
-  synchronise(sim);
+  const CellMotion motion = at_rest(sim.state());
+  for (std::int64_t k = 0; k < steps; ++k) sim.advance(motion, motion);
+  sim.state();
 }
 
 /// One segment of logarithmic strain `length` * direction from the volume fraction nu.
@@ -156,29 +156,33 @@ inline StraightSegment segment_of(const Eigen::Matrix3d& direction, double lengt
 /// Runs the simulation along the drive from its start to its end in equal steps of at most the engine's, with an open
 /// ledger. Returns the number of steps.
 inline std::int64_t run_along(Simulation& sim, const Drive& drive) {
-  const double steps = std::ceil(drive.duration / sim.dt);
-  sim.dt = drive.duration / steps;
-  open_ledger(sim);
+  const double steps = std::ceil(drive.duration / sim.dt());
+  sim.set_dt(drive.duration / steps);
+  sim.open_ledger();
   for (double k = 0; k < steps; ++k) {
-    const double end = k + 1 < steps ? (k + 1) * sim.dt : drive.duration;
-    advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, end));
+    const double end = k + 1 < steps ? (k + 1) * sim.dt() : drive.duration;
+    sim.advance(motion_at(drive, (k + 0.5) * sim.dt()), motion_at(drive, end));
   }
-  synchronise(sim);
+  sim.state();
   return static_cast<std::int64_t>(steps);
 }
 
 /// Sum of the drag-free forces m a on each sphere [N]; right where background_viscosity is 0 or all velocities vanish.
-inline Eigen::Vector3d force_on(const Simulation& sim, std::size_t i) {
-  return sim.state.packing.mass[i] * Eigen::Vector3d(sim.state.ax[i], sim.state.ay[i], sim.state.az[i]);
+inline Eigen::Vector3d force_on(Simulation& sim, std::size_t i) {
+  return sim.state().packing.mass[i] * Eigen::Vector3d(sim.state().ax[i], sim.state().ay[i], sim.state().az[i]);
+}
+inline Eigen::Vector3d force_on(Simulation&& sim, std::size_t i) { return force_on(sim, i); }
+
+/// Contact forces on the spheres of a state without drag, as the plain loops take them at its start [N].
+inline std::vector<Row> contact_forces(const State& state, const CellMotion& motion) {
+  EngineOptions plain;
+  plain.precision = Precision::reference;
+  plain.refuse_deep_overlaps = false;
+  return Simulation(state, plain, motion).plain()->force;
 }
 
-/// The whole list of a simulation whose state is synchronised, not only the near ones of it.
-inline NeighbourList list_of(const Simulation& sim) {
-  if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes))
-    return plain_list(*mixed, sim.state.packing, Listed::all);
-  if (const auto* full = std::get_if<Lanes<double>>(&sim.lanes))
-    return plain_list(*full, sim.state.packing, Listed::all);
-  return sim.list;
-}
+/// The whole list of a simulation, not only the near ones of it.
+inline NeighbourList list_of(Simulation& sim) { return sim.neighbours(Listed::all); }
+inline NeighbourList list_of(Simulation&& sim) { return sim.neighbours(Listed::all); }
 
 }  // namespace grainlaw::dem::scene

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tuple>
 
 #include "dem/engine/lanes/lane_search.hpp"
 #include "dem/engine/lanes/large_pages.hpp"
@@ -232,6 +231,114 @@ void move_sphere(const PlacedGroup<Real>& a, std::size_t i, PlacedGroup<Real>& b
   b.radius[j] = a.radius[i];
 }
 
+/// Where spheres go. A sphere has five indices: in the State (`sphere`), the lane where it was (`from`), its place in spatial
+/// order (p, of which Spatial knows the first two), the lane where it goes (t), and that lane's group with the lane in it (g, l).
+struct Seating {
+  std::vector<Found> blocks;                       // of the search, by blocks of places
+  std::vector<const std::uint32_t*> neighbour;     // of each place: the places of its neighbours ...
+  std::vector<std::uint32_t> count;                // ... and how many
+  std::vector<std::uint32_t> place;                // of each lane
+  std::vector<std::uint32_t> lane;                 // of each place
+  std::vector<std::uint32_t> rungs;                // of each group: neighbours of the sphere with most
+};
+
+/// Finds the neighbours of all places and seats the spheres of each block by number of near neighbours, so that the lanes of
+/// a group have equally many.
+Seating seat(const Spatial& s, float narrower, std::size_t n, ThreadTeam& team) {
+  Seating seating;
+  seating.blocks.resize(block_count(n));
+  seating.neighbour.resize(n);
+  for (auto* v : {&seating.count, &seating.place, &seating.lane}) v->resize(n);
+  seating.rungs.assign((n + kLanes - 1) / kLanes, 0);
+  team.for_each_block(seating.blocks.size(), [&](std::size_t block) {
+    const std::size_t begin = block * kBlockSize, end = std::min(n, begin + kBlockSize);
+    const Found& found = seating.blocks[block] = search(s, narrower, begin, end);
+    const std::uint32_t* neighbour = found.neighbour.data();
+    for (std::size_t p = begin; p < end; ++p) {
+      seating.neighbour[p] = neighbour;
+      seating.count[p] = found.count[p - begin];
+      neighbour += seating.count[p];
+    }
+    const auto first = seating.place.begin() + static_cast<std::ptrdiff_t>(begin), last = seating.place.begin() + static_cast<std::ptrdiff_t>(end);
+    std::iota(first, last, static_cast<std::uint32_t>(begin));
+    std::stable_sort(first, last, [&](std::uint32_t p, std::uint32_t q) { return found.near_count[p - begin] > found.near_count[q - begin]; });
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::uint32_t p = seating.place[t];
+      seating.lane[p] = static_cast<std::uint32_t>(t);
+      seating.rungs[t / kLanes] = std::max(seating.rungs[t / kLanes], seating.count[p]);
+    }
+  });
+  return seating;
+}
+
+template <class Real>
+void make_room_for_list(Lanes<Real>& lanes, const Seating& seating) {
+  const std::size_t groups = seating.rungs.size();
+  lanes.first_rung.assign(groups + 1, 0);
+  for (std::size_t g = 0; g < groups; ++g) lanes.first_rung[g + 1] = lanes.first_rung[g] + seating.rungs[g];
+  for (auto* rung : {&lanes.rung, &lanes.near_rung}) {
+    reserve_on_large_pages(*rung, lanes.first_rung[groups]);
+    rung->resize(lanes.first_rung[groups]);
+  }
+  lanes.near_first.assign(groups, 0);
+  lanes.near_count.assign(groups, 0);
+}
+
+/// The list of a group: the rows of its spheres' neighbours, then nobody's.
+template <class Real>
+void write_rungs(Lanes<Real>& lanes, const Seating& seating, std::size_t g) {
+  constexpr auto row_size = static_cast<std::uint32_t>(sizeof(SphereRow<Real>));
+  const auto nobody = static_cast<std::uint32_t>(seating.rungs.size() * kLanes);
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const std::size_t t = g * kLanes + l;
+    const std::size_t p = t < lanes.spheres ? seating.place[t] : 0;
+    const std::uint32_t own = t < lanes.spheres ? seating.count[p] : 0;
+    Rung* rung = lanes.rung.data() + lanes.first_rung[g];
+    for (std::size_t k = 0; k < own; ++k) rung[k].row[l] = row_size * seating.lane[seating.neighbour[p][k]];
+    for (std::size_t k = own; k < seating.rungs[g]; ++k) rung[k].row[l] = row_size * nobody;
+  }
+}
+
+/// The groups in their new order, at first with nobody in them.
+template <class Real>
+struct Regrouped {
+  std::vector<SphereGroup<Real>> group;
+  std::vector<PlacedGroup<Real>> placed;
+  std::vector<ListedGroup<Real>> listed;
+
+  explicit Regrouped(std::size_t groups) : listed(groups) {
+    reserve_on_large_pages(group, groups);
+    group.resize(groups);
+    PlacedGroup<Real> nobodies{};
+    std::fill(std::begin(nobodies.radius), std::end(nobodies.radius), Real{kNobodysRadius});
+    placed.assign(groups, nobodies);
+  }
+};
+
+/// The spheres of a group from where they were.
+template <class Real>
+void move_in(const Lanes<Real>& lanes, const Spatial& s, const Seating& seating, std::size_t g, Regrouped<Real>& to) {
+  for (std::size_t l = 0; l < kLanes && g * kLanes + l < lanes.spheres; ++l) {
+    const std::size_t p = seating.place[g * kLanes + l], from = s.from[p];
+    move_sphere(lanes.group[from / kLanes], from % kLanes, to.group[g], l);
+    move_sphere(lanes.placed[from / kLanes], from % kLanes, to.placed[g], l);
+    to.listed[g].x[l] = to.placed[g].x[l];
+    to.listed[g].y[l] = to.placed[g].y[l];
+    to.listed[g].z[l] = to.placed[g].z[l];
+    to.listed[g].sphere[l] = s.sphere[p];
+  }
+}
+
+/// Rows of the right number, nobody's at the end; they are to be written.
+template <class Real>
+void make_room_for_rows(Lanes<Real>& lanes) {
+  for (auto* row : {&lanes.row, &lanes.next_row}) {
+    reserve_on_large_pages(*row, lanes.group.size() * kLanes + 1);
+    row->assign(lanes.group.size() * kLanes + 1, {});
+    row->back().reach = row->back().radius = Real{kNobodysRadius};
+  }
+}
+
 }  // namespace
 
 bool fits_lanes(const std::array<double, 3>& edge, double cutoff) {
@@ -243,114 +350,27 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   const std::size_t n = lanes.spheres;
   if (n >= std::numeric_limits<std::int32_t>::max() - kLanes) throw InvalidInput("neighbour list: too many spheres");
   const Spatial s = sort_spatially(lanes, edge, skin, team);
-  const std::size_t groups = (n + kLanes - 1) / kLanes;
-  std::vector<Found> blocks(block_count(n));
-  // place among the sorted -> count and first neighbour; lane -> place; place -> lane; group -> rungs
-  std::vector<std::uint32_t> count(n), order(n), rank(n), rungs(groups, 0);
-  std::vector<const std::uint32_t*> first(n);
-  team.for_each_block(blocks.size(), [&](std::size_t block) {
-    const std::size_t begin = block * kBlockSize, end = std::min(n, begin + kBlockSize);
-    const Found& found = blocks[block] = search(s, static_cast<float>(skin - near_skin), begin, end);
-    const std::uint32_t* neighbour = found.neighbour.data();
-    for (std::size_t p = begin; p < end; ++p) {
-      first[p] = neighbour;
-      count[p] = found.count[p - begin];
-      neighbour += count[p];
-    }
-    // Spheres of a block by number of neighbours, so that the lanes of a group have equally many.
-    const auto lane = order.begin() + static_cast<std::ptrdiff_t>(begin), last = order.begin() + static_cast<std::ptrdiff_t>(end);
-    std::iota(lane, last, static_cast<std::uint32_t>(begin));
-    std::stable_sort(lane, last, [&](std::uint32_t p, std::uint32_t q) { return found.near_count[p - begin] > found.near_count[q - begin]; });
-    for (std::size_t t = begin; t < end; ++t) {
-      rank[order[t]] = static_cast<std::uint32_t>(t);
-      rungs[t / kLanes] = std::max(rungs[t / kLanes], count[order[t]]);
-    }
-  });
-
-  std::vector<SphereGroup<Real>> group;
-  reserve_on_large_pages(group, groups);
-  group.resize(groups);
-  PlacedGroup<Real> nobodies{};
-  std::fill(std::begin(nobodies.radius), std::end(nobodies.radius), Real{kNobodysRadius});
-  std::vector<PlacedGroup<Real>> placed(groups, nobodies);
-  std::vector<ListedGroup<Real>> listed(groups);
-  lanes.first_rung.assign(groups + 1, 0);
-  for (std::size_t g = 0; g < groups; ++g) lanes.first_rung[g + 1] = lanes.first_rung[g] + rungs[g];
-  constexpr auto row_size = static_cast<std::uint32_t>(sizeof(SphereRow<Real>));
-  const auto nobody = static_cast<std::uint32_t>(groups * kLanes);
-  reserve_on_large_pages(lanes.rung, lanes.first_rung[groups]);
-  lanes.rung.resize(lanes.first_rung[groups]);
+  const Seating seating = seat(s, static_cast<float>(skin - near_skin), n, team);
+  const std::size_t groups = seating.rungs.size();
+  make_room_for_list(lanes, seating);
+  Regrouped<Real> regrouped(groups);
   team.for_each_block(block_count(n), [&](std::size_t block) {
     for (std::size_t g = block * kBlockSize / kLanes; g < std::min(groups, (block + 1) * kBlockSize / kLanes); ++g) {
-      for (std::size_t l = 0; l < kLanes; ++l) {
-        const std::size_t t = g * kLanes + l;
-        const std::uint32_t own = t < n ? count[order[t]] : 0;
-        for (std::size_t k = 0; k < own; ++k) lanes.rung[lanes.first_rung[g] + k].row[l] = row_size * rank[first[order[t]][k]];
-        for (std::size_t k = lanes.first_rung[g] + own; k < lanes.first_rung[g + 1]; ++k) lanes.rung[k].row[l] = row_size * nobody;
-        if (t >= n) continue;
-        const std::size_t p = order[t], from = s.from[p];
-        move_sphere(lanes.group[from / kLanes], from % kLanes, group[g], l);
-        move_sphere(lanes.placed[from / kLanes], from % kLanes, placed[g], l);
-        listed[g].x[l] = placed[g].x[l];
-        listed[g].y[l] = placed[g].y[l];
-        listed[g].z[l] = placed[g].z[l];
-        listed[g].sphere[l] = s.sphere[p];
-      }
+      write_rungs(lanes, seating, g);
+      move_in(lanes, s, seating, g, regrouped);
     }
   });
-  reserve_on_large_pages(lanes.near_rung, lanes.rung.size());
-  lanes.near_rung.resize(lanes.rung.size());
-  lanes.near_first.assign(groups, 0);
-  lanes.near_count.assign(groups, 0);
   constexpr std::size_t caches = 8 << 20;
   lanes.beyond_caches = groups * (sizeof(SphereGroup<Real>) + 2 * kLanes * sizeof(SphereRow<Real>)) > caches;
   // Memory is farther away than caches; but rows that a thread asks for without need must be taken back by the thread that writes them.
   const std::size_t layers = kReach[2] * n * s.stripe / (std::size_t{s.bins[1]} * s.bins[2]), early = lanes.beyond_caches ? 4 * kBlockSize : 0;
   lanes.frontier = std::min((layers + early) / kLanes, groups);
-  lanes.group = std::move(group);
-  lanes.placed = std::move(placed);
-  lanes.listed = std::move(listed);
-  for (auto* row : {&lanes.row, &lanes.next_row}) {
-    reserve_on_large_pages(*row, nobody + 1);
-    row->assign(nobody + 1, {});
-    row->back().reach = row->back().radius = Real{kNobodysRadius};
-  }
+  lanes.group = std::move(regrouped.group);
+  lanes.placed = std::move(regrouped.placed);
+  lanes.listed = std::move(regrouped.listed);
+  make_room_for_rows(lanes);
 }
 
-template <class Real>
-NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p, Listed which) {
-  constexpr int far = 2;  // unwrapped fractions of neighbours differ by less than 2.5
-  constexpr int across = 2 * far + 1;
-  NeighbourList list;
-  for (int nx = -far; nx <= far; ++nx) {
-    for (int ny = -far; ny <= far; ++ny) {
-      for (int nz = -far; nz <= far; ++nz) list.offset.emplace_back(nx, ny, nz);
-    }
-  }
-  const auto image = [](double difference) { return static_cast<int>(std::lround(difference)) + far; };
-  std::vector<std::size_t> lane(p.size());
-  for (std::size_t t = 0; t < lanes.spheres; ++t) lane[lanes.listed[t / kLanes].sphere[t % kLanes]] = t;
-  list.first.push_back(0);
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const std::size_t g = lane[i] / kLanes, l = lane[i] % kLanes;
-    const auto [first, last, rung] = which == Listed::all
-                                         ? std::tuple(lanes.first_rung[g], lanes.first_rung[g + 1], lanes.rung.data())
-                                         : std::tuple(lanes.near_first[g], lanes.near_first[g] + lanes.near_count[g], lanes.near_rung.data());
-    for (std::size_t k = first; k < last; ++k) {
-      const std::size_t t = rung[k].row[l] / sizeof(SphereRow<Real>);
-      if (t >= lanes.spheres) break;
-      const std::uint32_t j = lanes.listed[t / kLanes].sphere[t % kLanes];
-      list.j.push_back(j);
-      list.image.push_back(static_cast<std::uint32_t>(
-          (image(p.sx[i] - p.sx[j]) * across + image(p.sy[i] - p.sy[j])) * across + image(p.sz[i] - p.sz[j])));
-    }
-    list.first.push_back(list.j.size());
-  }
-  return list;
-}
-
-template NeighbourList plain_list(const Lanes<float>&, const Packing&, Listed);
-template NeighbourList plain_list(const Lanes<double>&, const Packing&, Listed);
 template void arrange(Lanes<float>&, const std::array<double, 3>&, double, double, ThreadTeam&);
 template void arrange(Lanes<double>&, const std::array<double, 3>&, double, double, ThreadTeam&);
 

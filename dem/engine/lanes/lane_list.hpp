@@ -6,7 +6,6 @@
 #include <array>
 
 #include "dem/engine/lanes/lanes.hpp"
-#include "dem/engine/neighbour_list.hpp"
 #include "dem/engine/thread_team.hpp"
 
 namespace grainlaw::dem {
@@ -19,12 +18,5 @@ bool fits_lanes(const std::array<double, 3>& edge, double cutoff);
 /// Rows are to be written and the near ones to be picked anew.
 template <class Real>
 void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin, double near_skin, ThreadTeam& team);
-
-enum class Listed { all, near };
-
-/// All of the list, or those picked last, for sums over the contacts of `packing`, whose fractions may lie outside the
-/// cell. Spheres and neighbours in the order of the packing.
-template <class Real>
-NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& packing, Listed which);
 
 }  // namespace grainlaw::dem

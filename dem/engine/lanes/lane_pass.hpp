@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dem/engine/lanes/lanes.hpp"
+#include "dem/engine/stepping.hpp"
 
 namespace grainlaw::dem {
 
@@ -45,13 +46,6 @@ void take_rows(Lanes<Real>& lanes, std::size_t begin, std::size_t end) {
     own.ax[l] = row.vx, own.ay[l] = row.vy, own.az[l] = row.vz;
   }
 }
-
-enum class Drifted {
-  well,
-  beyond_near,  ///< two spheres may touch that are not among the near ones; maybe beyond the list, where that was not in danger
-  beyond_list,  ///< two spheres may touch that are not listed, or will be so when the near ones are picked the next time
-  lost,         ///< a sphere moved farther in this step than an eighth of the cell, or is nowhere
-};
 
 /// Half kick, drift, rows.
 Drifted kick_and_drift(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end);

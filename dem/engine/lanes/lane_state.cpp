@@ -1,6 +1,7 @@
 #include "dem/engine/lanes/lane_state.hpp"
 
 #include <cmath>
+#include <tuple>
 
 #include "dem/engine/lanes/lane_list.hpp"
 
@@ -140,6 +141,40 @@ double sum_squared_overlaps(const Lanes<Real>& lanes, const Eigen::Matrix3d& H) 
   return sum * lanes.unit.length * lanes.unit.length;
 }
 
+template <class Real>
+NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p, Listed which) {
+  constexpr int far = 2;  // unwrapped fractions of neighbours differ by less than 2.5
+  constexpr int across = 2 * far + 1;
+  NeighbourList list;
+  for (int nx = -far; nx <= far; ++nx) {
+    for (int ny = -far; ny <= far; ++ny) {
+      for (int nz = -far; nz <= far; ++nz) list.offset.emplace_back(nx, ny, nz);
+    }
+  }
+  const auto image = [](double difference) { return static_cast<int>(std::lround(difference)) + far; };
+  std::vector<std::size_t> lane(p.size());
+  for (std::size_t t = 0; t < lanes.spheres; ++t) lane[lanes.listed[t / kLanes].sphere[t % kLanes]] = t;
+  list.first.push_back(0);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const std::size_t g = lane[i] / kLanes, l = lane[i] % kLanes;
+    const auto [first, last, rung] = which == Listed::all
+                                         ? std::tuple(lanes.first_rung[g], lanes.first_rung[g + 1], lanes.rung.data())
+                                         : std::tuple(lanes.near_first[g], lanes.near_first[g] + lanes.near_count[g], lanes.near_rung.data());
+    for (std::size_t k = first; k < last; ++k) {
+      const std::size_t t = rung[k].row[l] / sizeof(SphereRow<Real>);
+      if (t >= lanes.spheres) break;
+      const std::uint32_t j = lanes.listed[t / kLanes].sphere[t % kLanes];
+      list.j.push_back(j);
+      list.image.push_back(static_cast<std::uint32_t>(
+          (image(p.sx[i] - p.sx[j]) * across + image(p.sy[i] - p.sy[j])) * across + image(p.sz[i] - p.sz[j])));
+    }
+    list.first.push_back(list.j.size());
+  }
+  return list;
+}
+
+template NeighbourList plain_list(const Lanes<float>&, const Packing&, Listed);
+template NeighbourList plain_list(const Lanes<double>&, const Packing&, Listed);
 template double sum_squared_overlaps(const Lanes<float>&, const Eigen::Matrix3d&);
 template double sum_squared_overlaps(const Lanes<double>&, const Eigen::Matrix3d&);
 template Lanes<float> make_lanes(const State&, double, double, double, ThreadTeam&);

@@ -2,6 +2,7 @@
 // Between a State and its lanes. A State made from lanes is exact: it gives the same lanes again, bit for bit.
 
 #include "dem/engine/lanes/lanes.hpp"
+#include "dem/engine/neighbour_list.hpp"
 #include "dem/engine/state.hpp"
 #include "dem/engine/thread_team.hpp"
 
@@ -19,5 +20,12 @@ void store_lanes(const Lanes<Real>& lanes, State& state);
 /// Sum of squared overlaps [m^2], every contact twice, in double precision whatever the lanes'.
 template <class Real>
 double sum_squared_overlaps(const Lanes<Real>& lanes, const Eigen::Matrix3d& H);
+
+enum class Listed { all, near };
+
+/// All of the list, or those picked last, for sums over the contacts of `packing`, whose fractions may lie outside the
+/// cell. Spheres and neighbours in the order of the packing.
+template <class Real>
+NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& packing, Listed which);
 
 }  // namespace grainlaw::dem

@@ -5,10 +5,12 @@
 #include <cstdlib>
 
 #include "app/exit_code.hpp"
-#include "model/files/probe_columns.hpp"
+#include "chain/planning/precision_plan.hpp"
+#include "model/calibrated_law.hpp"
+#include "model/files/column.hpp"
 #include "model/files/schema.hpp"
+#include "model/vocabulary/probe_row.hpp"
 #include "predict/prediction_series.hpp"
-#include "model/files/series_columns.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -58,19 +60,19 @@ std::string column_table(const std::vector<Column<Row>>& columns) {
   std::string table = "| column | symbol | meaning | needed |\n|---|---|---|---|\n";
   for (const auto& c : columns) {
     table +=
-        fmt::format("| `{}` | {} | {} | {} |\n", c.title(), cell(c.symbol), cell(c.meaning), c.required ? "yes" : "");
+        fmt::format("| `{}` | {} | {} | {} |\n", c.title(), cell(c.symbol), cell(c.meaning), c.required() ? "yes" : "");
   }
   return table;
 }
 
-TEST(FormatsDocument, ListsTheColumnsOfTests) { expect_section("series columns", column_table(observation_columns())); }
+TEST(FormatsDocument, ListsTheColumnsOfTests) { expect_section("series columns", column_table(columns_of<Observation>())); }
 TEST(FormatsDocument, ListsTheColumnsOfPredictions) {
-  expect_section("prediction columns", column_table(predict::prediction_columns()));
+  expect_section("prediction columns", column_table(columns_of<predict::PredictedRow>()));
 }
 
 TEST(FormatsDocument, ListsTheColumnsOfProbes) {
   std::string table = "| column | symbol | meaning |\n|---|---|---|\n";
-  for (const auto& c : probe_columns())
+  for (const auto& c : columns_of<ProbeRow>())
     table += fmt::format("| `{}` | {} | {} |\n", c.title(), cell(c.symbol), cell(c.meaning));
   expect_section("probe columns", table);
 }
@@ -126,6 +128,66 @@ TEST(FormatsDocument, ListsTheKeysOfATest) {
     if (item.key() != "keep") shared.push_back(item.key());
   }
   expect_section("test keys", key_table(Schema::test, shared));
+}
+
+/// A struct's fields as keys of a schema: what is missing or differs, as it should read.
+template <class T>
+void expect_keys(const Json& properties) {
+  for_each_field<T>([&](const auto& field) {
+    using Value = ValueOf<T, decltype(field.access)>;
+    if constexpr (HasFields<Value>) {
+      expect_keys<Value>(properties);
+    } else {
+      if (field.rule == Rule::fixed || field.rule == Rule::free) return;
+      Json wanted{{"description", field.meaning + (*field.unit ? fmt::format(" [{}]", field.unit) : "")}};
+      if constexpr (NamedEnum<Value>) wanted["enum"] = names_of(Value{});
+      if constexpr (std::is_arithmetic_v<Value>)
+        wanted["type"] = std::is_same_v<Value, bool> ? "boolean" : std::is_integral_v<Value> ? "integer" : "number";
+      const Json found = properties.value(field.name, Json::object());
+      for (const auto& item : wanted.items())
+        EXPECT_EQ(found.value(item.key(), Json()), item.value()) << "needs \"" << field.name << "\": " << wanted;
+    }
+  });
+}
+
+TEST(Schemas, HaveTheKeysOfTheEnginesOptions) {
+  expect_keys<dem::PreparationOptions>(schema(Schema::spec)["properties"]);
+  expect_keys<dem::PreparationOptions>(schema(Schema::test)["properties"]);
+}
+
+/// The names that a schema allows at a place.
+template <class E>
+void expect_names(Schema which, const std::string& place, const std::vector<std::string>& but = {}) {
+  Json wanted = Json::array();
+  for (const std::string name : names_of(E{})) {
+    if (std::find(but.begin(), but.end(), name) == but.end()) wanted.push_back(name);
+  }
+  Json found = schema(which).at(Json::json_pointer(place))["enum"];
+  if (found.back().is_null()) found.erase(found.size() - 1);
+  EXPECT_EQ(found, wanted) << place;
+}
+
+TEST(Schemas, AllowTheNamesOfTheEnums) {
+  expect_names<Coupling>(Schema::spec, "/properties/coupling");
+  expect_names<Coupling>(Schema::parameters, "/properties/coupling");
+  expect_names<Coupling>(Schema::study, "/properties/coupling");
+  expect_names<Role>(Schema::spec, "/properties/tests/items/properties/role");
+  expect_names<Role>(Schema::dataset, "/properties/tests/items/properties/role");
+  expect_names<Branch>(Schema::path, "/properties/initial/properties/branch");
+  expect_names<Mode>(Schema::path, "/properties/segments/items/properties/mode", {"tensor"});
+  expect_names<Condition::Quantity>(Schema::path,
+                                    "/properties/segments/items/properties/free/properties/volume/properties/quantity");
+  expect_names<Status>(Schema::parameters, "/properties/parameters/additionalProperties/properties/status");
+  expect_names<Rung>(Schema::study_settings, "/properties/settings/items/properties/model");
+  expect_names<chain::Cause>(Schema::plan,
+                             "/properties/pilot/properties/quantities/items/properties/biases/items/properties/cause");
+  Json extents = Json::array();
+  for (const auto& item :
+       schema(Schema::path)["properties"]["segments"]["items"]["properties"]["extent"]["properties"].items())
+    extents.push_back(item.key());
+  Json kinds = names_of(ExtentKind{});
+  std::sort(kinds.begin(), kinds.end());
+  EXPECT_EQ(extents, kinds);
 }
 
 TEST(FormatsDocument, StatesTheExitCodes) {

@@ -5,8 +5,8 @@
 
 #include "model/parameters_file.hpp"
 #include "fit/calibrate.hpp"
+#include "model/files/column.hpp"
 #include "model/files/dataset.hpp"
-#include "model/files/series_columns.hpp"
 #include "model/files/series_csv.hpp"
 #include "predict/prediction_series.hpp"
 #include "tests/support/figure.hpp"
@@ -73,7 +73,7 @@ TEST_F(Locale, F12KeepsEveryDouble) {
     std::vector<TestRecord> read;
     for (const DatasetTest& test : read_dataset(folder_).tests) read.push_back(test.record);
     for (std::size_t i = 0; i < tests.size(); ++i)
-      count += differing(read[i].rows, tests[i].rows, observation_columns());
+      count += differing(read[i].rows, tests[i].rows, columns_of<Observation>());
     const CalibratedLaw again = fit::calibrate(read, {}, {}).law;
 
     // parameters: disk and back, then the prediction
@@ -86,11 +86,11 @@ TEST_F(Locale, F12KeepsEveryDouble) {
       count += differ(*a[i], *b[i]) ? 1 : 0;
     }
     const predict::Prediction after = predicted(loaded);
-    count += differing(after.rows, before.rows, predict::prediction_columns());
+    count += differing(after.rows, before.rows, columns_of<predict::PredictedRow>());
     predict::write_prediction_series(folder_ / "p.csv", after.rows);
     for (const char* name : {"P_star", "s_par", "F_par"}) {
       const auto from_disk = predict::read_prediction_series(folder_ / "p.csv");
-      for (const auto& column : predict::prediction_columns()) {
+      for (const auto& column : columns_of<predict::PredictedRow>()) {
         if (column.name != name) continue;
         for (std::size_t i = 0; i < before.rows.size(); ++i) {
           count += differ(column.get(from_disk.at(i)), column.get(before.rows[i])) ? 1 : 0;

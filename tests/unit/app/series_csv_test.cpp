@@ -1,11 +1,11 @@
 #include "predict/prediction_series.hpp"
+#include "model/files/column.hpp"
 #include "model/files/series_csv.hpp"
 
 #include <cmath>
 #include <cstring>
 #include <set>
 
-#include "model/files/series_columns.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -29,7 +29,7 @@ TestRecord full_record() {
   for (std::size_t i = 0; i < record.rows.size(); ++i) {
     Observation& row = record.rows[i];
     row.time = 1e-3 * static_cast<double>(i);
-    for (const auto& column : observation_columns()) {
+    for (const auto& column : columns_of<Observation>()) {
       if (!consistent.contains(column.name) && std::isnan(column.get(row))) column.set(row, value *= -1.37);
     }
   }
@@ -56,7 +56,7 @@ class SeriesCsv : public testing::TemporaryFolder {
     for (int line = -1; line < static_cast<int>(rows.size()); ++line) {
       std::string separator;
       if (line >= 0 && edit) edit(rows[static_cast<std::size_t>(line)]);
-      for (const auto& column : observation_columns()) {
+      for (const auto& column : columns_of<Observation>()) {
         if (names.contains(column.name)) continue;
         text += separator +
                 (line < 0 ? column.title() : fmt::format("{}", column.get(rows[static_cast<std::size_t>(line)])));
@@ -75,7 +75,7 @@ TEST_F(SeriesCsv, IsReadBackBitForBit) {
   const auto rows = read_series(folder_ / "s.csv", record_.path, record_.packing);
   ASSERT_EQ(rows.size(), record_.rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (const auto& column : observation_columns()) {
+    for (const auto& column : columns_of<Observation>()) {
       EXPECT_TRUE(same_bits(column.get(rows[i]), column.get(record_.rows[i]))) << column.name << " in row " << i;
     }
   }
@@ -90,8 +90,8 @@ TEST_F(SeriesCsv, HeaderNamesUnits) {
 
 TEST_F(SeriesCsv, ComputesWhatFollowsFromRequiredColumns) {
   std::set<std::string> optional;
-  for (const auto& column : observation_columns()) {
-    if (!column.required) optional.insert(column.name);
+  for (const auto& column : columns_of<Observation>()) {
+    if (!column.required()) optional.insert(column.name);
   }
   const auto rows = read(text_without(optional));
   ASSERT_EQ(rows.size(), record_.rows.size());

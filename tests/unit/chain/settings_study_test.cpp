@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "model/student.hpp"
 #include "tests/support/study_dataset.hpp"
 

@@ -20,7 +20,7 @@ struct Pair {
   double distance() const { return 2.5e-3 - kOverlap; }
   Simulation simulation() const {
     const Eigen::Vector3d x(7e-3, 8e-3, 9e-3);
-    return start_simulation(
+    return Simulation(
         scene::state_of(scene::cubic(kEdge), {{1e-3, x + distance() * n, v}, {1.5e-3, x}}, material), scene::engine_options(),
         motion);
   }
@@ -64,7 +64,7 @@ TEST(Averages, SignedMeasuresAlongADirection) {
   Pair pair;
   pair.n = {0, 0, 1};
   pair.v.setZero();
-  const Simulation sim = pair.simulation();
+  Simulation sim = pair.simulation();
   const Deviator<double> along_z = Deviator<double>{1, 0, 0, 0, 0};
   const Observation seen = observe(sim, pair.motion, along_z);
   EXPECT_NEAR(seen.s_par, 3, 1e-12);
@@ -92,7 +92,7 @@ TEST(Averages, ShapeAndLodeAreTensionPositive) {
 
 TEST(Averages, EnergiesAndOverlap) {
   const Pair pair;
-  const Simulation sim = pair.simulation();
+  Simulation sim = pair.simulation();
   const Observation seen = observe(sim, pair.motion, kNone);
   EXPECT_NEAR(seen.E_pot, 0.5 * 1e8 * kOverlap * kOverlap, 1e-11 * seen.E_pot);
   EXPECT_DOUBLE_EQ(seen.E_kin, 0.5 * sphere_mass(pair.material, 1e-3) * 14);
@@ -120,16 +120,16 @@ TEST(Averages, InertialNumber) {
 TEST(Averages, LedgerAndTimeAreTakenFromTheState) {
   const Pair pair;
   Simulation sim = pair.simulation();
-  open_ledger(sim);
+  sim.open_ledger();
   scene::advance_at_rest(sim, 30);
   const Observation seen = observe(sim, pair.motion, kNone);
-  EXPECT_EQ(seen.time, sim.state.time);
-  EXPECT_EQ(seen.W_box, sim.state.ledger.W_box);
-  EXPECT_EQ(seen.D_contact, sim.state.ledger.D_contact);
-  EXPECT_EQ(seen.D_background, sim.state.ledger.D_background);
+  EXPECT_EQ(seen.time, sim.time());
+  EXPECT_EQ(seen.W_box, sim.state().ledger.W_box);
+  EXPECT_EQ(seen.D_contact, sim.state().ledger.D_contact);
+  EXPECT_EQ(seen.D_background, sim.state().ledger.D_background);
   EXPECT_GT(seen.D_contact, 0);
   EXPECT_GT(seen.D_background, 0);
-  EXPECT_EQ(seen.energy_residual, energy_residual(sim));
+  EXPECT_EQ(seen.energy_residual, energy_residual(sim.state()));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/statics/contact_network.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

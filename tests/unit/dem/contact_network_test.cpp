@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"

@@ -17,7 +17,7 @@
 #include "dem/engine/lanes/lane_search.hpp"
 #include "dem/engine/lanes/lane_state.hpp"
 #include "dem/engine/neighbour_list.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/dem_state_bits.hpp"
 

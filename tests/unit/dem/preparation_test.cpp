@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 

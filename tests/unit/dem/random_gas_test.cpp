@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "dem/element_tests/preparation.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 

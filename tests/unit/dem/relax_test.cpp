@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dem/engine/lanes/lane_pass.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
@@ -74,7 +74,7 @@ TEST(Relax, AgreesWithDynamics) {
   ASSERT_TRUE(relax(minimised, {}, RelaxOptions{1e-8, 200000}, {}).relaxed);
   Simulation sim = scene::start(disturbed, 0.1);
   scene::advance_at_rest(sim, 40000);
-  const ReferenceSums dynamic = forces_at_rest(sim.state), minimal = forces_at_rest(minimised);
+  const ReferenceSums dynamic = forces_at_rest(sim.state()), minimal = forces_at_rest(minimised);
   ASSERT_LE(max_net_force(dynamic), 1e-6 * mean_contact_force(dynamic, relaxed.material)) << "the dynamics is not at rest yet";
   EXPECT_NEAR(dynamic.E_pot / minimal.E_pot, 1, 1e-10);
   EXPECT_NEAR(dynamic.virial.trace() / minimal.virial.trace(), 1, 1e-6);
@@ -85,9 +85,9 @@ TEST(Relax, LeavesAStateAtRestThatRemembersNoMotion) {
   scene::Draw draw(1);
   scene::random_velocities(state.packing, 1, draw);
   Simulation sim = scene::start(state, 0.1);
-  open_ledger(sim);
+  sim.open_ledger();
   scene::advance_at_rest(sim, 10);
-  state = sim.state;
+  state = sim.state();
   const Eigen::Matrix3d H = state.packing.H;
   relax(state, {}, {}, {});
   EXPECT_EQ(kinetic_energy(state.packing), 0);

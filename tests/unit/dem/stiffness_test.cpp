@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "tests/support/dem_scene.hpp"
 

@@ -128,9 +128,10 @@ TEST(Estimate, IntervalsAreStudents) {
 
 TEST(Status, IsFoundByItsName) {
   for (const Status status : {Status::fitted, Status::fixed, Status::tied, Status::at_bound, Status::not_identified})
-    EXPECT_EQ(status_of(to_string(status)), status);
+    EXPECT_EQ(value_of<Status>(to_string(status), "status"), status);
   EXPECT_EQ(to_string(Status::at_bound), "at_bound");
-  EXPECT_EQ(refusal([] { status_of("sure"); }), "status: 'sure' is not known");
+  EXPECT_EQ(refusal([] { value_of<Status>("sure", "status"); }),
+            "status: 'sure' is none; give one of fitted, fixed, tied, at_bound, not_identified");
 }
 
 }  // namespace

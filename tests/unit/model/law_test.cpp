@@ -51,8 +51,8 @@ void expect_equal(const LawState<double>& a, const LawState<double>& b, double t
 }
 
 TEST(Law, NamesReadBack) {
-  for (const Rung rung : kRungs) EXPECT_EQ(rung_of(to_string(rung)), rung);
-  EXPECT_THROW(rung_of("Eq. 16"), InvalidInput);
+  for (const Rung rung : kRungs) EXPECT_EQ(value_of<Rung>(to_string(rung), "rung"), rung);
+  EXPECT_THROW(value_of<Rung>("Eq. 16", "rung"), InvalidInput);
 }
 
 TEST(Law, DirectionOfAVelocityGradient) {

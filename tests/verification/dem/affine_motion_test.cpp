@@ -37,10 +37,10 @@ TEST(AffineMotion, D10ThereAndBackInAMillionSteps) {
   const Eigen::Matrix3d H_0 = 20e-3 * Eigen::Matrix3d::Identity();
   const std::vector<Eigen::Vector3d> x_0{{3e-3, 4e-3, 16e-3}, {11e-3, 14e-3, 6e-3}, {17e-3, 5e-3, 9e-3}};
   Simulation sim = scene::start(scene::state_of(H_0, {{0.5e-3, x_0[0]}, {0.8e-3, x_0[1]}, {0.6e-3, x_0[2]}}));
-  const Packing& p = sim.state.packing;
+  const Packing& p = sim.state().packing;
   const double nu_0 = volume_fraction(p);
   const std::int64_t steps = 1000000;
-  const double duration = static_cast<double>(steps) * sim.dt;
+  const double duration = static_cast<double>(steps) * sim.dt();
   // The gradient feeds viscous forces only and there are no contacts, so a few instants of it suffice.
   const Eigen::Matrix3d L = velocity_gradient(0.3, duration);
 
@@ -61,8 +61,8 @@ TEST(AffineMotion, D10ThereAndBackInAMillionSteps) {
       worst = std::max(worst, std::abs(volume_fraction(p) / (nu_0 / F.determinant()) - 1));
     }
   }
-  EXPECT_GT(sim.rebuilds, 1U) << "the deformation must have invalidated the list";
-  EXPECT_EQ(sim.state.ledger.W_box, 0);
+  EXPECT_GT(sim.rebuilds(), 1U) << "the deformation must have invalidated the list";
+  EXPECT_EQ(sim.state().ledger.W_box, 0);
   EXPECT_EQ(kinetic_energy(p), 0);
   expect_figure("D10.there_and_back", worst, 1e-13);
 }
@@ -73,13 +73,13 @@ double drift_error(Transport transport, int steps) {
   const Eigen::Matrix3d H_0 = scene::cubic(20e-3);
   Simulation sim = scene::start(scene::state_of(H_0, {{0.5e-3, x_0, v}}, {2000, 1e8, 1, 0}));
   const double t_end = 3e-4;
-  sim.dt = t_end / steps;
+  sim.set_dt(t_end / steps);
   const auto motion = [&](double t) {
     const Eigen::Vector3d stretch = (a * t).array().exp();
     return CellMotion{stretch.asDiagonal() * H_0, Eigen::Matrix3d(a.asDiagonal()), transport};
   };
-  for (int k = 0; k < steps; ++k) scene::step(sim, motion((k + 0.5) * sim.dt), motion((k + 1) * sim.dt));
-  const Packing& p = sim.state.packing;
+  for (int k = 0; k < steps; ++k) scene::step(sim, motion((k + 0.5) * sim.dt()), motion((k + 1) * sim.dt()));
+  const Packing& p = sim.state().packing;
   EXPECT_EQ(scene::velocity(p, 0), v);
   Eigen::Vector3d expected;
   for (int c = 0; c < 3; ++c) {
@@ -110,9 +110,9 @@ TEST(AffineMotion, WallDrivenSphereReentersWithItsVelocity) {
       H(0, 0) *= std::exp(-1e4 * t);
       return CellMotion{H, L, Transport::wall};
     };
-    scene::step(sim, motion((k + 0.5) * sim.dt), motion((k + 1) * sim.dt));
+    scene::step(sim, motion((k + 0.5) * sim.dt()), motion((k + 1) * sim.dt()));
   }
-  const Packing& p = sim.state.packing;
+  const Packing& p = sim.state().packing;
   const double edge = p.H(0, 0);
   ASSERT_LT(edge, 19e-3);
   ASSERT_GT(edge, 9.5e-3);
@@ -128,13 +128,13 @@ TEST(AffineMotion, DragDecaysExponentially) {
   const double m = sphere_mass(material, 1e-3), t_b = m / material.background_viscosity;
   const auto error = [&](int steps) {
     Simulation sim = scene::start(scene::state_of(scene::cubic(20e-3), {{1e-3, {1e-3, 2e-3, 3e-3}, {3, -2, 1}}}));
-    sim.dt = t_b / steps;
-    open_ledger(sim);
+    sim.set_dt(t_b / steps);
+    sim.open_ledger();
     scene::advance_at_rest(sim, steps);
     const Eigen::Vector3d exact = std::exp(-1.0) * Eigen::Vector3d(3, -2, 1);
-    EXPECT_NEAR(sim.state.ledger.D_background, 0.5 * m * 14 * (1 - std::exp(-2.0)),
+    EXPECT_NEAR(sim.state().ledger.D_background, 0.5 * m * 14 * (1 - std::exp(-2.0)),
                 0.5 * m * 14 * 3.0 / (steps * steps));
-    return (scene::velocity(sim.state.packing, 0) - exact).norm() / exact.norm();
+    return (scene::velocity(sim.state().packing, 0) - exact).norm() / exact.norm();
   };
   EXPECT_LE(error(100), 1e-5);
   EXPECT_NEAR(std::log2(error(50) / error(100)), 2, 0.1);

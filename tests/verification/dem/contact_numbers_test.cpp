@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "dem/engine/averages.hpp"
-#include "dem/element_tests/element_test.hpp"
-#include "dem/engine/reference.hpp"
+#include "dem/element_tests/element_run.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_contact_statistics.hpp"
 #include "tests/support/dem_families.hpp"
@@ -124,7 +124,7 @@ TEST(ContactNumbersOfFew, D21NoContactsNoStressNoRatios) {
     for (const double speed : {0.0, 0.5}) {
       const State state = spheres_apart(n, speed);
       Simulation sim = scene::start(state);
-      open_ledger(sim);
+      sim.open_ledger();
       scene::advance_at_rest(sim, 10);
       const Observation seen = observe(sim, scene::at_rest(state), Deviator<double>{1, 0, 0, 0, 0});
       wrong += wrong_without_contacts(seen, n > 0);

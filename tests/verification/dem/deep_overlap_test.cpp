@@ -8,8 +8,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "dem/element_tests/element_test.hpp"
-#include "dem/engine/reference.hpp"
+#include "dem/element_tests/element_run.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_compression.hpp"
@@ -66,7 +66,7 @@ TEST(DeepOverlap, D17Repels) {
     for (const double depth : {0.01, 0.1, 0.5, 0.9, 1.2}) {
       const State deep = small_inside_big(state, depth, draw);
       const ReferenceSums sums = reference_sums(deep.packing, deep.material, scene::at_rest(deep));
-      const Simulation sim = scene::start(deep);
+      Simulation sim = scene::start(deep);
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (std::size_t i = 0; i < deep.packing.size(); ++i) {
         force_error = std::max(force_error, (scene::force_on(sim, i) - sums.force[i]).norm() / sums.max_force);
@@ -180,10 +180,10 @@ TEST(DeepOverlap, D18TinyDistancesHaveADirection) {
       error = std::max(error, (scene::force_on(sim, 1) - expected).norm() / expected.norm());
       scene::advance_at_rest(sim, 10);
       for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_TRUE(scene::position(sim.state.packing, i).allFinite() &&
-                    scene::velocity(sim.state.packing, i).allFinite());
+        EXPECT_TRUE(scene::position(sim.state().packing, i).allFinite() &&
+                    scene::velocity(sim.state().packing, i).allFinite());
       }
-      EXPECT_GT(sim.state.packing.size() > 1 ? scene::velocity(sim.state.packing, 1)(axis) : 0, 0);
+      EXPECT_GT(sim.state().packing.size() > 1 ? scene::velocity(sim.state().packing, 1)(axis) : 0, 0);
     }
   }
   expect_figure("D18.direction_error", error, 1e-12);

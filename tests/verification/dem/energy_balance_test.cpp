@@ -77,11 +77,11 @@ double collision_residual(double contact_viscosity, double steps) {
                                   {{r, {x, 1e-2, 1e-2}, {0.5, 0, 0}}, {r, {x + 2 * r + gap, 1e-2, 1e-2}, {-0.5, 0, 0}}},
                                   material);
     Simulation sim = scene::start(state, dt / min_collision_time(state.packing, material));
-    open_ledger(sim);
+    sim.open_ledger();
     scene::advance_at_rest(sim, static_cast<std::int64_t>(steps) + 6);
-    EXPECT_EQ(sim.state.sums.E_pot, 0) << "they must have parted";
-    const Ledger& ledger = sim.state.ledger;
-    sum += {ledger.D_contact, ledger.E_start - kinetic_energy(sim.state.packing) - ledger.D_contact};
+    EXPECT_EQ(sim.state().sums.E_pot, 0) << "they must have parted";
+    const Ledger& ledger = sim.state().ledger;
+    sum += {ledger.D_contact, ledger.E_start - kinetic_energy(sim.state().packing) - ledger.D_contact};
   }
   return sum.residual_over_lost();
 }

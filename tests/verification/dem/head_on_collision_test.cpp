@@ -127,12 +127,12 @@ double closed_contact_error(double steps_per_period) {
   Simulation sim = scene::start(scene::state_of(
       Eigen::Vector3d(edge, 20e-3, 20e-3).asDiagonal(),
       {{r, {edge / 4, 9e-3, 9e-3}, {speed / 2, 0, 0}}, {r, {3 * edge / 4, 9e-3, 9e-3}, {-speed / 2, 0, 0}}}, material));
-  sim.dt = 2 * std::numbers::pi / omega / steps_per_period;
-  const Packing& p = sim.state.packing;
+  sim.set_dt(2 * std::numbers::pi / omega / steps_per_period);
+  const Packing& p = sim.state().packing;
   double error = 0;
   for (int k = 1; k <= 3 * steps_per_period; ++k) {
     scene::advance_at_rest(sim, 1);
-    const double t = k * sim.dt;
+    const double t = k * sim.dt();
     const double u = (p.sx[0] - p.sx[1] + 0.5) * edge, exact = speed / omega * std::exp(-eta * t) * std::sin(omega * t);
     error = std::max(error, std::abs(u - exact) / (speed / omega));
   }

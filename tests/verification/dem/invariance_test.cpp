@@ -38,29 +38,29 @@ Drive uniaxial(const State& state) {
 
 void advance_along(Simulation& sim, const Drive& drive, int from, int to) {
   for (int k = from; k < to; ++k)
-    scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+    scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt()), motion_at(drive, (k + 1) * sim.dt()));
 }
 
 TEST(Invariance, SameBitsWhenContinuedFromACopy) {
   const State state = scene::bursting_packing(600);
   const Drive drive = uniaxial(state);
   Simulation whole = scene::start(state, 0.1);
-  open_ledger(whole);
+  whole.open_ledger();
   std::uint64_t rebuilds = 0;
   int at_a_rebuild = 0;
   for (int k = 0; k < 120; ++k) {
     advance_along(whole, drive, k, k + 1);
-    if (whole.rebuilds != rebuilds) ++at_a_rebuild;
-    rebuilds = whole.rebuilds;
+    if (whole.rebuilds() != rebuilds) ++at_a_rebuild;
+    rebuilds = whole.rebuilds();
     // Continue a copy for some steps, with another number of threads.
-    EngineOptions options = whole.options;
+    EngineOptions options = whole.options();
     options.threads = 1 + k % 3;
-    Simulation copy = start_simulation(whole.state, options, motion_at(drive, (k + 1) * whole.dt));
-    ASSERT_EQ(copy.dt, whole.dt);
+    Simulation copy(whole.state(), options, motion_at(drive, (k + 1) * whole.dt()));
+    ASSERT_EQ(copy.dt(), whole.dt());
     Simulation original = whole;
     advance_along(copy, drive, k + 1, k + 4);
     advance_along(original, drive, k + 1, k + 4);
-    ASSERT_TRUE(bits_of(copy.state) == bits_of(original.state)) << "continued at step " << k;
+    ASSERT_TRUE(bits_of(copy.state()) == bits_of(original.state())) << "continued at step " << k;
   }
   EXPECT_GT(at_a_rebuild, 1);
 }
@@ -73,19 +73,19 @@ TEST(Invariance, Galilean) {
     scene::launch(moving.packing, i, scene::velocity(resting.packing, i) + boost);
   }
   Simulation a = scene::start(resting, 0.1), b = scene::start(moving, 0.1);
-  open_ledger(a);
-  open_ledger(b);
+  a.open_ledger();
+  b.open_ledger();
   const int steps = 200;
   scene::advance_at_rest(a, steps);
   scene::advance_at_rest(b, steps);
   double worst = 0;
   for (std::size_t i = 0; i < resting.packing.size(); ++i) {
-    const Eigen::Vector3d v = scene::velocity(a.state.packing, i);
-    worst = std::max(worst, (scene::velocity(b.state.packing, i) - boost - v).norm());
+    const Eigen::Vector3d v = scene::velocity(a.state().packing, i);
+    worst = std::max(worst, (scene::velocity(b.state().packing, i) - boost - v).norm());
   }
   EXPECT_LE(worst, 1e-9 * kSpeed) << "rounding, amplified by some collisions";
-  EXPECT_NEAR(a.state.sums.E_pot, b.state.sums.E_pot, 1e-10 * a.state.sums.E_pot);
-  EXPECT_NEAR(a.state.ledger.D_contact, b.state.ledger.D_contact, 1e-10 * a.state.ledger.D_contact);
+  EXPECT_NEAR(a.state().sums.E_pot, b.state().sums.E_pot, 1e-10 * a.state().sums.E_pot);
+  EXPECT_NEAR(a.state().ledger.D_contact, b.state().ledger.D_contact, 1e-10 * a.state().ledger.D_contact);
 }
 
 TEST(Invariance, OrderOfTheSpheres) {
@@ -109,7 +109,7 @@ TEST(Invariance, OrderOfTheSpheres) {
   scene::advance_at_rest(b, 100);
   double worst = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    worst = std::max(worst, (scene::velocity(b.state.packing, i) - scene::velocity(a.state.packing, order[i])).norm());
+    worst = std::max(worst, (scene::velocity(b.state().packing, i) - scene::velocity(a.state().packing, order[i])).norm());
   }
   EXPECT_LE(worst, 1e-9 * kSpeed);
 }
@@ -120,7 +120,7 @@ TEST(Invariance, SkinOfTheList) {
   for (const double skin : {0.02, 0.1, 1.0}) {
     EngineOptions options = scene::engine_options();
     options.skin = skin;
-    Simulation sim = start_simulation(state, options, scene::at_rest(state));
+    Simulation sim(state, options, scene::at_rest(state));
     scene::advance_at_rest(sim, 100);
     seen.push_back(observe(sim, scene::at_rest(state), Deviator<double>::Zero()));
   }

@@ -48,8 +48,8 @@ TEST_P(LatticeTest, D11PressureFabricAndCoordination) {
   const double nu = N * 4.0 / 3.0 * std::numbers::pi * r() * r() * r() / V;
   double error = 0, deviator = 0;
   for (const double shift : {0.0, 0.125, 0.8125}) {
-    const Simulation sim = lattice({shift, 0.5 * shift, -shift});
-    const Observation seen = observe(sim, scene::at_rest(sim.state), Deviator<double>::Zero());
+    Simulation sim = lattice({shift, 0.5 * shift, -shift});
+    const Observation seen = observe(sim, scene::at_rest(sim.state()), Deviator<double>::Zero());
     // The overlap is the difference of lengths 50 times larger: its rounding is that of the lengths.
     error = std::max({error, std::abs(seen.stress.tensor.trace() / 3 / P - 1), std::abs(seen.F_v / (C * nu) - 1),
                       std::abs(seen.C - C), std::abs(seen.P_star / (2 * r() * P / k) - 1), std::abs(seen.nu / nu - 1)});
@@ -70,7 +70,7 @@ TEST_P(LatticeTest, D11PressureFabricAndCoordination) {
 TEST_P(LatticeTest, D11StaysInEquilibrium) {
   Simulation sim = lattice({0.25, 0.5, 0.125});
   scene::advance_at_rest(sim, 1000);
-  EXPECT_LE(kinetic_energy(sim.state.packing), 1e-24 * sim.state.sums.E_pot);
+  EXPECT_LE(kinetic_energy(sim.state().packing), 1e-24 * sim.state().sums.E_pot);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -85,8 +85,8 @@ TEST(SelfImages, ShearedSimpleLatticeTouchesItsImages) {
   const double a = 2e-3, r = 0.5 * a / 0.98;
   Eigen::Matrix3d H;
   H << 1, 0.5, 0.5, 0, std::sqrt(3.0) / 2, std::sqrt(3.0) / 6, 0, 0, std::sqrt(2.0 / 3.0);
-  const Simulation sim = scene::start(scene::state_of(a * H, {{r, {0.3e-3, 0.2e-3, 0.9e-3}}}));
-  const Observation seen = observe(sim, scene::at_rest(sim.state), Deviator<double>::Zero());
+  Simulation sim = scene::start(scene::state_of(a * H, {{r, {0.3e-3, 0.2e-3, 0.9e-3}}}));
+  const Observation seen = observe(sim, scene::at_rest(sim.state()), Deviator<double>::Zero());
   const double V = a * a * a / std::sqrt(2.0);
   EXPECT_EQ(seen.C, 12);
   EXPECT_NEAR(seen.stress.tensor.trace() / 3, 6 * 1e8 * (2 * r - a) * a / (3 * V), 1e-12 * seen.stress.tensor.trace());
@@ -110,12 +110,12 @@ TEST(LatticeEnergy, WorkAndDissipationOfAShrinkingCell) {
         make_drive(scene::segment_of(-Eigen::Matrix3d::Identity(), strain, 0.5), options, scene::cubic(a_0));
     const auto errors = [&](int steps) {
       State state = scene::state_of(scene::cubic(a_0), {{r, {0, 0, 0}}}, {2000, k, gamma, 0.1});
-      Simulation sim = start_simulation(std::move(state), scene::engine_options(), motion_at(drive, 0));
-      sim.dt = drive.duration / steps;
+      Simulation sim(std::move(state), scene::engine_options(), motion_at(drive, 0));
+      sim.set_dt(drive.duration / steps);
       scene::run_along(sim, drive);
-      EXPECT_NEAR(sim.state.sums.E_pot - sim.state.ledger.E_start, stored, 1e-11 * stored);
-      return std::pair(std::abs(sim.state.ledger.W_box / (stored + lost) - 1),
-                       std::abs(sim.state.ledger.D_contact / lost - 1));
+      EXPECT_NEAR(sim.state().sums.E_pot - sim.state().ledger.E_start, stored, 1e-11 * stored);
+      return std::pair(std::abs(sim.state().ledger.W_box / (stored + lost) - 1),
+                       std::abs(sim.state().ledger.D_contact / lost - 1));
     };
     const auto [work, loss] = errors(20);
     const auto [finer_work, finer_loss] = errors(80);

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"
 

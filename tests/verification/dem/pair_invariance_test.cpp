@@ -103,7 +103,7 @@ TEST_P(ObliquePair, D4MomentumDriftOverAMillionSteps) {
     Simulation sim = scene::start(scene::state_of(
         scene::cubic(edge),
         {{r_i, x_i, boost + Eigen::Vector3d(11, 7, -13)}, {r_j, x_j, boost + Eigen::Vector3d(-5, 4, 6)}}, material));
-    const Packing& p = sim.state.packing;
+    const Packing& p = sim.state().packing;
     const auto momentum = [&] {
       return Eigen::Vector3d(p.mass[0] * scene::velocity(p, 0) + p.mass[1] * scene::velocity(p, 1));
     };
@@ -114,7 +114,7 @@ TEST_P(ObliquePair, D4MomentumDriftOverAMillionSteps) {
     bool touching = false;
     for (int k = 0; k < 1000000; ++k) {
       scene::advance_at_rest(sim, 1);
-      const bool touches = sim.state.sums.E_pot > 0;
+      const bool touches = sim.state().sums.E_pot > 0;
       collisions += touches && !touching ? 1 : 0;
       touching = touches;
       drift = std::max(drift, (momentum() - before).norm() / scale);

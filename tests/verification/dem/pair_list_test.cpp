@@ -88,24 +88,18 @@ TEST_P(PairListOfFamily, D19AlongARunThatShearsAndCollapses) {
   const auto motion = [&](double k) {
     Eigen::Matrix3d F = Eigen::Matrix3d::Identity(), L = Eigen::Matrix3d::Zero();
     F(0, 2) = shear * k;
-    L(0, 2) = shear / sim.dt;
-    L.diagonal().setConstant(-shrink / sim.dt);
+    L(0, 2) = shear / sim.dt();
+    L.diagonal().setConstant(-shrink / sim.dt());
     return CellMotion{std::exp(-shrink * k) * F * H_0, L, Transport::homogeneous};
   };
   long missed = 0;
   for (int k = 0; k < steps; ++k) {
     scene::step(sim, motion(k + 0.5), motion(k + 1));
-    if (k % 50 == 0) missed += scene::contacts_missed(sim.list, sim.state.packing);
+    if (k % 50 == 0) missed += scene::contacts_missed(scene::list_of(sim), sim.state().packing);
   }
   expect_figure(scene::figure_name("D19.missed_in_collapse", GetParam()), static_cast<double>(missed), 0);
-  EXPECT_NEAR(volume_fraction(sim.state.packing), 1.2, 1e-9);
-  EXPECT_GT(sim.rebuilds, 3U);
-}
-
-NeighbourList near_ones(const Simulation& sim) {
-  const Packing& packing = sim.state.packing;
-  if (const auto* mixed = std::get_if<Lanes<float>>(&sim.lanes)) return plain_list(*mixed, packing, Listed::near);
-  return plain_list(std::get<Lanes<double>>(sim.lanes), packing, Listed::near);
+  EXPECT_NEAR(volume_fraction(sim.state().packing), 1.2, 1e-9);
+  EXPECT_GT(sim.rebuilds(), 3U);
 }
 
 struct NearFaults {
@@ -116,20 +110,19 @@ struct NearFaults {
 NearFaults near_faults(const State& state, Precision precision, const Eigen::Vector3d& rate, int steps, int every) {
   EngineOptions options;
   options.precision = precision;
-  Simulation sim = start_simulation(state, options, scene::at_rest(state));
+  Simulation sim(state, options, scene::at_rest(state));
   const auto motion = [&](double k) {
     const Eigen::Vector3d F = (rate * k).array().exp();
-    return CellMotion{F.asDiagonal() * state.packing.H, (rate / sim.dt).asDiagonal(), Transport::homogeneous};
+    return CellMotion{F.asDiagonal() * state.packing.H, (rate / sim.dt()).asDiagonal(), Transport::homogeneous};
   };
   NearFaults sum;
   for (int k = 0; k < steps; ++k) {
-    const std::int64_t last_pick = sim.near_step;
-    advance(sim, motion(k + 0.5), motion(k + 1));
-    sum.picks += sim.near_step == last_pick ? 0 : 1;
+    const std::int64_t last_pick = sim.lanes()->near_step;
+    sim.advance(motion(k + 0.5), motion(k + 1));
+    sum.picks += sim.lanes()->near_step == last_pick ? 0 : 1;
     if (k % every != 0) continue;
-    synchronise(sim);
-    const NeighbourList near = near_ones(sim);
-    sum.missed += scene::contacts_missed(near, sim.state.packing);
+    const NeighbourList near = sim.neighbours(Listed::near);
+    sum.missed += scene::contacts_missed(near, sim.state().packing);
     sum.listed += static_cast<long>(near.j.size());
     ++sum.looked;
   }

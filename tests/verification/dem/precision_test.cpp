@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "dem/engine/averages.hpp"
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "dem/engine/lanes/lane_pass.hpp"
 #include "dem/engine/lanes/lane_state.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/dem_state_bits.hpp"
 #include "tests/support/figure.hpp"
@@ -45,22 +45,21 @@ ForceErrors force_errors(State state) {
   options.precision = std::is_same_v<Real, float> ? Precision::mixed : Precision::full;
   options.time_step_fraction = 1e-5;  // nothing moves in one step
   state.material.background_viscosity = state.material.contact_viscosity = 0;
-  Simulation sim = start_simulation(state, options, still);
-  EXPECT_TRUE(std::holds_alternative<Lanes<Real>>(sim.lanes));
+  Simulation sim(state, options, still);
+  EXPECT_TRUE(sim.lanes() && std::holds_alternative<Lanes<Real>>(sim.lanes()->lanes));
   // the power of a cell that breathes slowly is the trace of the virial
   CellMotion breath = still;
   breath.L = Eigen::Matrix3d::Identity() * 1e-3;
-  advance(sim, breath, breath);
-  synchronise(sim);
+  sim.advance(breath, breath);
   ForceErrors errors;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Eigen::Vector3d f = p.mass[i] * Eigen::Vector3d(sim.state.ax[i], sim.state.ay[i], sim.state.az[i]);
+    const Eigen::Vector3d f = p.mass[i] * Eigen::Vector3d(sim.state().ax[i], sim.state().ay[i], sim.state().az[i]);
     const double error = (f - expected.force[i]).norm() / mean_force;
     errors.force += error * error / static_cast<double>(p.size());
     errors.max_force = std::max(errors.max_force, error);
   }
   errors.force = std::sqrt(errors.force);
-  errors.pressure = sim.state.sums.box_power / (-1e-3 * expected.virial.trace()) - 1;
+  errors.pressure = sim.state().sums.box_power / (-1e-3 * expected.virial.trace()) - 1;
   return errors;
 }
 
@@ -156,13 +155,12 @@ State moving_packing() {
 std::vector<std::uint64_t> bits_after(const State& state, const EngineOptions& options, int steps, int look_every) {
   CellMotion motion = scene::at_rest(state);
   motion.L.diagonal() << 100, -100, 30;
-  Simulation sim = start_simulation(state, options, motion);
+  Simulation sim(state, options, motion);
   for (int k = 1; k <= steps; ++k) {
-    advance(sim, motion, motion);
-    if (k % look_every == 0) synchronise(sim);
+    sim.advance(motion, motion);
+    if (k % look_every == 0) sim.state();
   }
-  synchronise(sim);
-  return scene::bits_of(sim.state);
+  return scene::bits_of(sim.state());
 }
 
 // A step that nobody looks at ends in the same pass over the spheres as the next one begins.
@@ -220,11 +218,10 @@ TEST(PortableBits, SkinChangesNoForce) {
     EngineOptions options;
     options.skin = skin;
     CellMotion motion = scene::at_rest(state);
-    Simulation sim = start_simulation(state, options, motion);
-    for (int k = 0; k < 500; ++k) advance(sim, motion, motion);
-    synchronise(sim);
-    if (expected.empty()) expected = sim.state.packing.vx;
-    differing += sim.state.packing.vx == expected ? 0 : 1;
+    Simulation sim(state, options, motion);
+    for (int k = 0; k < 500; ++k) sim.advance(motion, motion);
+    if (expected.empty()) expected = sim.state().packing.vx;
+    differing += sim.state().packing.vx == expected ? 0 : 1;
   }
   expect_figure("precision.skins_that_change_forces", differing, 0);
 }

@@ -111,14 +111,13 @@ TEST_F(Restart, R5TheListIsTheInterruptedRuns) {
   int lists = 0, differing = 0;
   double largest_stretch = 0;
   const StepObserver compare = [&](Simulation& sim, int, double) {
-    synchronise(sim);
     CellMotion still;
-    still.H = sim.state.packing.H;
-    const NeighbourList list = scene::list_of(sim), again = scene::list_of(start_simulation(sim.state, sim.options, still));
+    still.H = sim.state().packing.H;
+    const NeighbourList list = scene::list_of(sim), again = scene::list_of(Simulation(sim.state(), sim.options(), still));
     ++lists;
     const bool same = again.first == list.first && again.j == list.j && again.image == list.image;
     differing += same ? 0 : 1;
-    largest_stretch = std::max(largest_stretch, sim.state.packing.H(0, 0) / sim.state.ref_H(0, 0) - 1);
+    largest_stretch = std::max(largest_stretch, sim.state().packing.H(0, 0) / sim.state().ref_H(0, 0) - 1);
   };
   run_element_test(scene.start, scene.path, scene.options, {}, compare);
   EXPECT_GT(lists, 100);
@@ -137,7 +136,7 @@ TEST_F(Restart, R10AStoppedRunHasSavedItsLastStep) {
     std::stop_source source;
     std::uint64_t seen = 0;
     const StepObserver stop_at_the_seventh = [&](Simulation& sim, int, double) {
-      steps = sim.state.step;
+      steps = sim.step();
       if (++seen == 7) source.request_stop();
     };
     const RunControl control{{}, source.get_token()};

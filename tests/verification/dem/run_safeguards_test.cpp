@@ -11,7 +11,7 @@
 #include <numbers>
 #include <optional>
 
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"

@@ -76,17 +76,16 @@ TEST(Threads, R1DrivenRunWithRebuilds) {
   const Drive drive = make_drive(scene::segment_of(direction.asDiagonal(), 0.05, 0.7), options, start.packing.H);
   compare("driven", 40, [&](int threads) {
     Simulation sim = scene::start(start, 0.1, threads);
-    open_ledger(sim);
+    sim.open_ledger();
     Trace trace;
     for (int k = 0; k < 80; ++k) {
-      advance(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
+      sim.advance(motion_at(drive, (k + 0.5) * sim.dt()), motion_at(drive, (k + 1) * sim.dt()));
       if (k % 2 == 0) continue;
-      synchronise(sim);
-      trace.push_back(bits_of(sim.state));
-      const Bits seen = bits_of(observe(sim, motion_at(drive, (k + 1) * sim.dt), Deviator<double>::Zero()));
+      trace.push_back(bits_of(sim.state()));
+      const Bits seen = bits_of(observe(sim, motion_at(drive, (k + 1) * sim.dt()), Deviator<double>::Zero()));
       trace.back().insert(trace.back().end(), seen.begin(), seen.end());
     }
-    EXPECT_GT(sim.rebuilds, 2U) << "the list must have been rebuilt on the way";
+    EXPECT_GT(sim.rebuilds(), 2U) << "the list must have been rebuilt on the way";
     return trace;
   });
 }

@@ -123,7 +123,7 @@ TEST_P(ThreeInARow, D5AgreesWithTheMatrixExponential) {
     EXPECT_LT(row.overlap(y, 0), 0) << "all must have parted";
     EXPECT_LT(row.overlap(y, 1), 0) << "all must have parted";
     for (std::size_t i = 0; i < 3; ++i) {
-      worst = std::max(worst, std::abs(sim.state.packing.vx[i] - y(3 + static_cast<int>(i))) / kFirstSpeed);
+      worst = std::max(worst, std::abs(sim.state().packing.vx[i] - y(3 + static_cast<int>(i))) / kFirstSpeed);
     }
   }
   testing::expect_figure(fmt::format("D5.{:g}-{:g}-{:g}", 1e3 * row.r[0], 1e3 * row.r[1], 1e3 * row.r[2]), worst, 5e-3);
@@ -143,12 +143,12 @@ TEST(ThreeInARow, D5MirrorImageBitwise) {
     scene::advance_at_rest(a, 1);
     scene::advance_at_rest(b, 1);
     for (std::size_t i = 0; i < 3; ++i) {
-      const double sum = a.state.packing.sx[i] + b.state.packing.sx[i];  // exact, up to whole cells
+      const double sum = a.state().packing.sx[i] + b.state().packing.sx[i];  // exact, up to whole cells
       different += sum - std::floor(sum) != 0.5 ? 1 : 0;
-      different += a.state.packing.vx[i] != -b.state.packing.vx[i] ? 1 : 0;
+      different += a.state().packing.vx[i] != -b.state().packing.vx[i] ? 1 : 0;
     }
   }
-  EXPECT_LT(a.state.packing.vx[0], 0.5 * kFirstSpeed) << "they must have met";
+  EXPECT_LT(a.state().packing.vx[0], 0.5 * kFirstSpeed) << "they must have met";
   testing::expect_figure("D5.numbers_that_differ_in_the_mirror", different, 0);
 }
 

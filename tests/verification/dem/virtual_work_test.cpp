@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "dem/engine/averages.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/figure.hpp"
@@ -21,10 +21,10 @@ using testing::expect_figure;
 
 const Material kNoDrag{2000, 1e8, 1, 0};
 
-double elastic_energy(const State& state) { return scene::start(state).state.sums.E_pot; }
+double elastic_energy(const State& state) { return scene::start(state).state().sums.E_pot; }
 
 Eigen::Matrix3d stress(const State& state) {
-  const Simulation sim = scene::start(state);
+  Simulation sim = scene::start(state);
   return observe(sim, scene::at_rest(state), Deviator<double>::Zero()).stress.tensor;
 }
 
@@ -49,7 +49,7 @@ double stress_error(const State& state, double h) {
 
 /// Largest error of the forces on a sample of spheres over the largest force, likewise, with steps of h times <r>.
 double force_error(const State& state, double h, int sample) {
-  const Simulation sim = scene::start(state);
+  Simulation sim = scene::start(state);
   const Packing& p = state.packing;
   const double step = h * mean_radius(p);
   const Eigen::Matrix3d inverse = p.H.triangularView<Eigen::Upper>().solve(Eigen::Matrix3d::Identity());
@@ -93,7 +93,7 @@ TEST_P(VirtualWork, D6ForcesSumToZero) {
   State state = random_overlaps();
   scene::random_velocities(state.packing, 1, draw);
   const ReferenceSums reference = reference_sums(state.packing, state.material, scene::at_rest(state));
-  const Simulation sim = scene::start(state);
+  Simulation sim = scene::start(state);
   Eigen::Vector3d total = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < state.packing.size(); ++i) total += scene::force_on(sim, i);
   expect_figure(scene::figure_name("D6", GetParam()), total.norm() / reference.max_force, 1e-12);
@@ -119,9 +119,9 @@ TEST_P(VirtualWork, EngineEqualsThePlainReference) {
     motion.L << -120, 70, 40, 0, 90, -60, 0, 0, -30;
     EngineOptions options = scene::engine_options();
     options.refuse_deep_overlaps = false;
-    const Simulation sim = start_simulation(state, options, motion);
+    Simulation sim(state, options, motion);
     const Observation seen = observe(sim, motion, Deviator<double>::Zero());
-    const ReferenceSums expected = reference_sums(sim.state.packing, state.material, motion);
+    const ReferenceSums expected = reference_sums(sim.state().packing, state.material, motion);
     const double V = state.packing.volume();
 
     double worst = 0;
@@ -133,15 +133,15 @@ TEST_P(VirtualWork, EngineEqualsThePlainReference) {
     EXPECT_LE(worst, 1e-12 * expected.max_force);
     EXPECT_LE((seen.stress.tensor * V - expected.virial).norm(), 1e-13 * expected.virial.norm());
     EXPECT_LE((seen.fabric.tensor - expected.fabric).norm(), 1e-13 * expected.fabric.norm());
-    EXPECT_NEAR(sim.state.sums.E_pot, expected.E_pot, 1e-13 * expected.E_pot);
+    EXPECT_NEAR(sim.state().sums.E_pot, expected.E_pot, 1e-13 * expected.E_pot);
     EXPECT_NEAR(seen.E_pot, expected.E_pot, 1e-13 * expected.E_pot);
-    EXPECT_NEAR(sim.state.sums.contact_power, expected.contact_power, 1e-12 * expected.contact_power);
-    EXPECT_NEAR(sim.state.sums.box_power, expected.box_power, 1e-12 * motion.L.norm() * expected.virial.norm());
+    EXPECT_NEAR(sim.state().sums.contact_power, expected.contact_power, 1e-12 * expected.contact_power);
+    EXPECT_NEAR(sim.state().sums.box_power, expected.box_power, 1e-12 * motion.L.norm() * expected.virial.norm());
     EXPECT_NEAR(seen.mean_overlap * mean_radius(state.packing), 2 * expected.overlap / contacts,
                 1e-13 * expected.overlap);
     EXPECT_DOUBLE_EQ(seen.C_r, contacts / static_cast<double>(state.packing.size()));
     if (transport == Transport::homogeneous) {  // dW/dt = -V sigma : L with the virial of all contact forces
-      EXPECT_NEAR(sim.state.sums.box_power, -(expected.virial.transpose() * motion.L).trace(),
+      EXPECT_NEAR(sim.state().sums.box_power, -(expected.virial.transpose() * motion.L).trace(),
                   1e-12 * motion.L.norm() * expected.virial.norm());
     }
   }
@@ -156,11 +156,11 @@ TEST_P(VirtualWork, MeasuredStressEqualsThePlainReferenceAfterSteps) {
   const Drive drive = make_drive(segment, {500, Profile::constant, Transport::homogeneous}, state.packing.H);
   EngineOptions options = scene::engine_options();
   options.refuse_deep_overlaps = false;
-  Simulation sim = start_simulation(state, options, motion_at(drive, 0));
-  for (int k = 0; k < 5; ++k) scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt), motion_at(drive, (k + 1) * sim.dt));
-  const CellMotion motion = motion_at(drive, 5 * sim.dt);
+  Simulation sim(state, options, motion_at(drive, 0));
+  for (int k = 0; k < 5; ++k) scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt()), motion_at(drive, (k + 1) * sim.dt()));
+  const CellMotion motion = motion_at(drive, 5 * sim.dt());
   const Observation seen = observe(sim, motion, Deviator<double>::Zero());
-  const Packing& p = sim.state.packing;
+  const Packing& p = sim.state().packing;
   const ReferenceSums expected = reference_sums(p, state.material, motion);
   EXPECT_LE((seen.stress.tensor * p.volume() - expected.virial).norm(), 1e-12 * expected.virial.norm());
   EXPECT_LE((seen.fabric.tensor - expected.fabric).norm(), 1e-12 * expected.fabric.norm());
@@ -173,10 +173,12 @@ TEST(NewtonsThirdLaw, D6PairForcesAreOppositeToTheLastBit) {
   int different = 0;
   for (int n = 0; n < 1000; ++n) {
     const Eigen::Vector3d x = draw.vector(0, 1e-2), d = 0.9e-3 * draw.vector(-1, 1);
-    const Simulation sim = scene::start(scene::state_of(
+    Simulation sim = scene::start(scene::state_of(
         1e-2 * scene::sheared_shape(), {{1e-3, x, draw.vector(-1, 1)}, {1e-3, x + d, draw.vector(-1, 1)}}, kNoDrag));
     ASSERT_NE(scene::force_on(sim, 0).norm(), 0);
-    for (std::size_t a = 0; a < 3; ++a) different += sim.force[0][a] != -sim.force[1][a] ? 1 : 0;
+    ASSERT_TRUE(sim.plain()) << "a sheared cell";
+    const std::vector<Row>& force = sim.plain()->force;
+    for (std::size_t a = 0; a < 3; ++a) different += force[0][a] != -force[1][a] ? 1 : 0;
   }
   expect_figure("D6.pair_forces_not_opposite", different, 0);
 }

@@ -1,4 +1,4 @@
-#include "dem/element_tests/element_test.hpp"
+#include "dem/element_tests/element_run.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "dem/element_tests/energy_watch.hpp"
 #include "dem/statics/relax.hpp"
 #include "dem/files/state_file.hpp"
 #include "model/vocabulary/error.hpp"
@@ -122,9 +123,9 @@ TEST(ElementTest, ATimeStepIsAtMostTheEnginesAndSegmentsEndExactly) {
   std::uint64_t seen = 0;
   double last_e = 0;
   const ElementTestOptions options = fast_options();
-  const ElementTest test = run_element_test(start, path, options, {}, [&](const Simulation& sim, int index, double e) {
+  const ElementTest test = run_element_test(start, path, options, {}, [&](Simulation& sim, int index, double e) {
     ++seen;
-    EXPECT_EQ(sim.state.step, seen);
+    EXPECT_EQ(sim.step(), seen);
     EXPECT_EQ(index, 0);
     EXPECT_GT(e, last_e);
     last_e = e;
@@ -267,9 +268,8 @@ TEST(ElementTest, ARunContinuesFromAFileBitForBit) {
   const auto file = std::filesystem::temp_directory_path() / ("grainlaw-continue-" + std::to_string(::getpid()));
   const std::uint64_t interrupted_at = 700;
   const ElementTest whole = run_element_test(start, path, options, {}, [&](Simulation& sim, int, double) {
-    if (sim.state.step != interrupted_at) return;
-    synchronise(sim);
-    write_state(file, sim.state);
+    if (sim.step() != interrupted_at) return;
+    write_state(file, sim.state());
   });
   ASSERT_GT(whole.steps, 2 * interrupted_at);
 
@@ -278,18 +278,18 @@ TEST(ElementTest, ARunContinuesFromAFileBitForBit) {
   std::filesystem::remove(file);
   CellMotion motion = motion_at(drive, saved.time);
   motion.H = saved.packing.H;
-  Simulation sim = start_simulation(saved, options.engine, motion);
-  sim.dt = whole.time_step;
+  Simulation sim(saved, options.engine, motion);
+  sim.set_dt(whole.time_step);
   for (std::uint64_t k = interrupted_at; k < whole.steps; ++k) {
-    const double t = k + 1 == whole.steps ? drive.duration : static_cast<double>(k + 1) * sim.dt;
-    scene::step(sim, motion_at(drive, (static_cast<double>(k) + 0.5) * sim.dt), motion_at(drive, t));
+    const double t = k + 1 == whole.steps ? drive.duration : static_cast<double>(k + 1) * sim.dt();
+    scene::step(sim, motion_at(drive, (static_cast<double>(k) + 0.5) * sim.dt()), motion_at(drive, t));
   }
-  EXPECT_EQ(sim.state.packing.sx, whole.end.packing.sx);
-  EXPECT_EQ(sim.state.packing.vz, whole.end.packing.vz);
-  EXPECT_EQ(sim.state.ay, whole.end.ay);
-  EXPECT_EQ(sim.state.ledger.W_box, whole.end.ledger.W_box);
-  EXPECT_EQ(sim.state.ledger.D_background, whole.end.ledger.D_background);
-  EXPECT_EQ(sim.state.time, whole.end.time);
+  EXPECT_EQ(sim.state().packing.sx, whole.end.packing.sx);
+  EXPECT_EQ(sim.state().packing.vz, whole.end.packing.vz);
+  EXPECT_EQ(sim.state().ay, whole.end.ay);
+  EXPECT_EQ(sim.state().ledger.W_box, whole.end.ledger.W_box);
+  EXPECT_EQ(sim.state().ledger.D_background, whole.end.ledger.D_background);
+  EXPECT_EQ(sim.time(), whole.end.time);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "dem/element_tests/quasi_static_test.hpp"
+#include "dem/element_tests/quasi_static.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dem/element_tests/preparation.hpp"
-#include "dem/engine/reference.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/figure.hpp"
@@ -45,11 +45,11 @@ double max_net_force(const State& state) {
 TEST(QuasiStatic, EveryStepEndsInEquilibriumOnThePath) {
   const Scene scene(0.06, 4e-3, 5);
   std::uint64_t seen = 0;
-  const ElementTest test = scene.run([&](const Simulation& sim, int index, double e) {
+  const ElementTest test = scene.run([&](Simulation& sim, int index, double e) {
     ++seen;
     EXPECT_EQ(index, 0);
     EXPECT_NEAR(e, scene.path[0].length * static_cast<double>(seen) / 15, 1e-15);
-    EXPECT_LE(max_net_force(sim.state), 1e-7 * sim.state.material.stiffness * mean_radius(sim.state.packing));
+    EXPECT_LE(max_net_force(sim.state()), 1e-7 * sim.state().material.stiffness * mean_radius(sim.state().packing));
   });
   EXPECT_EQ(seen, 15u) << "three steps of 4e-3 for every row of 1.2e-2";
   ASSERT_EQ(test.rows.size(), 6u);
