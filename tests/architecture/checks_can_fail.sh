@@ -125,7 +125,7 @@ sow_text README.md 'and `dem/no_such_file.hpp`' 'README.md: names dem/no_such_fi
 sow_text README.md 'and `tests/run.sh --full`' 'names tests/run.sh'
 sow_text README.md $'and `over the end\nmodel/of_a_line.hpp`' 'names model/of_a_line.hpp'
 sow_text docs/page.md $'```sh\nexamples/none/run.sh OUT\n```' 'docs/page.md: names examples/none/run.sh'
-sow_text docs/theory/index.md '`predict/*.hpp`' 'names predict/*.hpp'
+sow_text docs/theory/index.md '`predict/*.md`' 'names predict/*.md'
 sow_text docs/theory/index.md '[law](law.md)' 'docs/theory/index.md: links to law.md'
 sow_text fit/calibrate.hpp '// docs/theory/index.md, section Loss.' 'fit/calibrate.hpp: names section "Loss" of docs/theory/index.md'
 clean_tree
