@@ -9,7 +9,7 @@
 #include "app/report/svg_figure.hpp"
 #include "app/report/figure_study.hpp"
 #include "chain/studies/study_json.hpp"
-#include "app/commands/study_table.hpp"
+#include "app/terminal/study_text.hpp"
 #include "model/student.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -43,20 +43,20 @@ TEST(StudyFiles, FollowTheSchema) {
 }
 
 TEST(StudyFiles, TheTableSaysWhetherTheDefaultIsDominated) {
-  EXPECT_NE(study_table(study(1.1)).find("base is not dominated\n"), std::string::npos);
-  EXPECT_NE(study_table(study(1)).find("base is dominated by cheap\n"), std::string::npos);
+  EXPECT_NE(study_text(study(1.1)).find("base is not dominated\n"), std::string::npos);
+  EXPECT_NE(study_text(study(1)).find("base is dominated by cheap\n"), std::string::npos);
   chain::SettingsStudy toss = study(1);
   std::swap(toss.results[0].dominated_by, toss.results[0].perhaps_dominated_by);
-  EXPECT_NE(study_table(toss).find("base may be dominated: cheaper and as good or better, within chance: cheap\n"),
+  EXPECT_NE(study_text(toss).find("base may be dominated: cheaper and as good or better, within chance: cheap\n"),
             std::string::npos)
       << "what chance leaves open is not called undominated";
   chain::SettingsStudy bold = study(1.1);
-  EXPECT_EQ(study_table(bold).find("near the energy balance's stop"), std::string::npos);
+  EXPECT_EQ(study_text(bold).find("near the energy balance's stop"), std::string::npos);
   bold.results[1].outcome.energy_residual = 0.009;
-  EXPECT_NE(study_table(bold).find("near the energy balance's stop"), std::string::npos);
+  EXPECT_NE(study_text(bold).find("near the energy balance's stop"), std::string::npos);
   chain::SettingsStudy nothing = study(1);
   nothing.results[0].reached = std::nan("");
-  EXPECT_NE(study_table(nothing).find("base shows nothing to be judged by\n"), std::string::npos);
+  EXPECT_NE(study_text(nothing).find("base shows nothing to be judged by\n"), std::string::npos);
 }
 
 TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
