@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "fit/leave_one_out.hpp"
-#include "fit/statistics/curve_error.hpp"
 #include "model/density_curves.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"

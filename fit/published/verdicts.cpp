@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "fit/statistics/curve_error.hpp"
+#include "model/density_curves.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::fit {

@@ -36,7 +36,4 @@ Solution solve_huber(const Problem& problem, int threads, const std::string& sta
 /// Of the parameters `from`, number `which` (0: as given) of the starts.
 std::vector<FreeParameter> start_number(const std::vector<FreeParameter>& from, int which);
 
-/// The converged solution of lowest cost, the first one when none is.
-Solution best_of(std::vector<Solution> solutions, StartSearch& search);
-
 }  // namespace grainlaw::fit
