@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "chain/studies/settings_study.hpp"
+#include "chain/studies/spec_settings.hpp"
 #include "fit/data/data_set.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/study_dataset.hpp"
