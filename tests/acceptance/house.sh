@@ -170,7 +170,7 @@ finished_runs() { find "$1/runs" -name run.json 2>/dev/null | sort; }
 taken_up() {
   local folder=$out/taken-up pid half code=0 before after
   rm -rf "$folder"
-  half=$(($(finished_runs "$out/quickstart/old" | wc -l) / 3))
+  half=$(($(finished_runs "$out/quickstart/old" | wc -l) / 2))
   set -m  # background jobs keep SIGINT
   "$old" calibrate examples/quickstart/spec.json -o "$folder" --quiet >/dev/null 2>"$out/taken-up.log" &
   pid=$!
