@@ -8,7 +8,7 @@
 #include "app/report/svg_figure.hpp"
 #include "app/terminal/session.hpp"
 #include "app/terminal/study_text.hpp"
-#include "chain/studies/study_json.hpp"
+#include "chain/studies/settings_study.hpp"
 
 namespace grainlaw::app {
 
