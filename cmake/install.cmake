@@ -13,8 +13,8 @@ foreach(room IN ITEMS model dem fit predict chain)
     INCLUDES DESTINATION ${installed_headers})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/ DESTINATION ${installed_headers}/${room}
     FILES_MATCHING PATTERN *.hpp
-    # private to dem: they show the JSON library
-    PATTERN "*-inl.hpp" EXCLUDE PATTERN sealed_file.hpp EXCLUDE PATTERN state_record.hpp EXCLUDE)
+    # private to dem: they show the vector library
+    PATTERN "*-inl.hpp" EXCLUDE)
 endforeach()
 install(EXPORT grainlaw-targets NAMESPACE grainlaw:: DESTINATION ${installed_package})
 

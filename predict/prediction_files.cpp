@@ -8,7 +8,7 @@
 #include "model/files/path_json.hpp"
 #include "predict/prediction_series.hpp"
 #include "model/files/one_line.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::predict {

@@ -1,7 +1,7 @@
 #include "predict/prediction_series.hpp"
 
-#include "model/files/column_csv.hpp"
-#include "model/files/durable_file.hpp"
+#include "model/files/column.hpp"
+#include "model/files/output.hpp"
 
 namespace grainlaw::predict {
 

@@ -7,7 +7,7 @@
 #include "chain/studies/calibrated_setting.hpp"
 #include "chain/studies/studies.hpp"
 #include "chain/studies/study_json.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/parameters_file.hpp"
 #include "predict/studies/integrator_study.hpp"
 

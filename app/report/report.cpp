@@ -10,7 +10,7 @@
 #include "app/report/page.hpp"
 #include "app/report/series.hpp"
 #include "app/report/tables.hpp"
-#include "model/files/durable_file.hpp"
+#include "model/files/output.hpp"
 
 namespace grainlaw::app {
 namespace report {

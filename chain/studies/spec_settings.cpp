@@ -6,7 +6,7 @@
 #include <set>
 
 #include "model/files/one_line.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "dem/runs/dataset_runs.hpp"
 #include "model/vocabulary/error.hpp"
 

@@ -6,8 +6,8 @@
 #include "chain/studies/fit_choices.hpp"
 #include "chain/studies/packing_quantities.hpp"
 #include "chain/studies/reference_by_packings.hpp"
-#include "model/files/adopted_dataset.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {
