@@ -1,4 +1,4 @@
-# What `cmake --install` puts below the prefix: the program, the rooms model, dem, fit and predict as libraries for
+# What `cmake --install` puts below the prefix: the program, the rooms below app as libraries for
 # find_package(grainlaw), and the documentation. Nothing in it names this source tree or the prefix.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -12,9 +12,7 @@ foreach(room IN ITEMS model dem fit predict chain)
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     INCLUDES DESTINATION ${installed_headers})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room}/ DESTINATION ${installed_headers}/${room}
-    FILES_MATCHING PATTERN *.hpp
-    # private to dem: they show the vector library
-    PATTERN "*-inl.hpp" EXCLUDE)
+    FILES_MATCHING PATTERN *.hpp PATTERN "*-inl.hpp" EXCLUDE)
 endforeach()
 install(EXPORT grainlaw-targets NAMESPACE grainlaw:: DESTINATION ${installed_package})
 

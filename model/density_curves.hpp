@@ -23,6 +23,11 @@ const std::vector<DensityCurve>& density_curves();
 /// Whether every parameter that the curve reads has a value.
 bool has_values(const CalibratedLaw& law, const DensityCurve& curve);
 
+/// Standard error of the curve at volume fraction `nu` by the delta method, sqrt(g^T V g), g its gradient to the parameters
+/// that it reads. V has the terms between stages, too: P* by Eq. (14) reads C* and phi_r, of the same packings. NaN when a
+/// parameter that the curve reads has no error.
+double standard_error(const CalibratedLaw& law, const DensityCurve& curve, double nu);
+
 struct CurvePoint {
   const DensityCurve* curve = nullptr;
   double nu = 0;         ///< volume fraction [-]

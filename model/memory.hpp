@@ -12,7 +12,7 @@
 //   A1      = (2/3)(a_P B <F',N> - <sigma',N>)
 //   s_lim   = s_max (z + sqrt(1 + z^2)), z = chi k (P_t - P)/(B s_max)   stress-dilatancy: while the packing would dilate, it bears
 //             more, while it would contract, less: s_max + chi k (P_t - P)/B to first order, and never negative
-//   q       = 1 - min(1, B <dx> <s - a2 F',N>/(DG de)), the share of shear that loads: by elasticity alone compression takes
+//   q       = 1 - min(1, max(0, B <dx> <s - a2 F',N>/(DG de))), the share of shear that loads: by elasticity alone compression takes
 //             the stress ratio down, and only what shear adds beyond that is plastic; 1 where the volume is constant or grows
 // P relaxes to its sheared level at constant volume: nu_J = nu_c nu/nu_P is the evolving jamming density, with nu_P the
 // density at which the reference, ISO unloading, carries P. To first order, nu_P = nu exp((P - P_iso)/B_iso); below nu_c

@@ -1,11 +1,7 @@
 #pragma once
-// Two 95 % bands about a predicted curve, g = d(row)/d(parameters), V the parameters' covariance (delta method):
-//   mean curve   half width t_n sqrt(g.V g)
-//   single run   half width sqrt(mean's^2 + (t_m s)^2),  s the scatter of runs of one path on different packings
-// t_n the 97.5 % quantile of Student's distribution with n degrees of freedom: errors are known from few packings. 1/n is
-// the mean of 1/n_k of the parameters, weighted by |g_k (V g)_k|; m is that of s.
-// s of P* is that of the volumetric strain times B* of ISO unloading at the row's nu; that of s_dev and F_dev is s_par's
-// and F_par's.
+// Two 95 % bands about a predicted curve, by the slopes of its rows to the parameters and their covariance: where the mean
+// over many packings is expected, and where a run of one packing is, wider by the scatter of such runs. Both by Student's t,
+// because errors are known from few packings. Formulas: docs/theory/bands.md.
 
 #include "predict/predict.hpp"
 

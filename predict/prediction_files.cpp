@@ -4,11 +4,11 @@
 
 #include <cmath>
 
+#include "model/files/column.hpp"
 #include "model/files/fields_json.hpp"
-#include "model/files/path_json.hpp"
-#include "predict/prediction_series.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
+#include "model/files/path_json.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::predict {
@@ -21,8 +21,7 @@ OrderedJson curve_to_json(const PredictedCurve& curve) {
   object["rows"] = curve.prediction.rows.size();
   object["unjammed"] = curve.prediction.unjammed;
   if (curve.prediction.unjammed) object["unjammed_at"] = fields_to_json(curve.prediction.unjammed_at);
-  OrderedJson& events = object["events"] = OrderedJson::array();
-  for (const PathEvent& event : curve.prediction.events) events.push_back(fields_to_json(event));
+  object["events"] = fields_to_json(curve.prediction.events);
   object["warnings"] = curve.prediction.warnings;
   object["solver"] = fields_to_json(curve.prediction.statistics);
   return object;
@@ -36,7 +35,7 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
   curve.prediction.model = curve.model;
   curve.prediction.unjammed = object.at("unjammed");
   if (curve.prediction.unjammed) read_fields(object.at("unjammed_at"), curve.prediction.unjammed_at);
-  for (const Json& event : object.at("events")) read_fields(event, curve.prediction.events.emplace_back());
+  read_fields(object.at("events"), curve.prediction.events);
   curve.prediction.warnings = object.at("warnings").get<std::vector<std::string>>();
   read_fields(object.at("solver"), curve.prediction.statistics);
   curve.prediction.rows = read_prediction_series(folder / curve.file);
@@ -46,10 +45,29 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
 /// The other way round of rung_to_json().
 void read_rung(const Json& object, PredictionFolder& content) {
   read_fields(object, content.needed);
-  for (const Json& change : object.at("changes")) read_fields(change, content.changes.emplace_back());
+  read_fields(object.at("changes"), content.changes);
 }
 
 }  // namespace
+
+void write_prediction_series(const std::filesystem::path& file, const std::vector<PredictedRow>& rows) {
+  write_durably(file, table_text(rows));
+}
+
+std::vector<PredictedRow> read_prediction_series(const std::filesystem::path& file) {
+  CsvReader reader(file);
+  const auto columns = matched<PredictedRow>(reader);
+  std::vector<PredictedRow> rows;
+  std::vector<double> values;
+  while (reader.next(values)) {
+    PredictedRow row;
+    row.state.sigma.setZero();
+    row.state.F.setZero();
+    for (std::size_t i = 0; i < values.size(); ++i) set_value(reader, row, *columns[i], values[i]);
+    rows.push_back(row);
+  }
+  return rows;
+}
 
 std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>& comparisons) {
   std::vector<CurveComparison> means;
@@ -98,8 +116,7 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
 
 OrderedJson rung_to_json(const PredictionFolder& content) {
   OrderedJson object = fields_to_json(content.needed);
-  OrderedJson& changes = object["changes"] = OrderedJson::array();
-  for (const RungChange& change : content.changes) changes.push_back(fields_to_json(change));
+  object["changes"] = fields_to_json(content.changes);
   return object;
 }
 
@@ -110,8 +127,6 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
     curves.push_back(curve_to_json(curve));
   }
   if (content.dem) {
-    OrderedJson entries = OrderedJson::array();
-    for (const CurveComparison& entry : content.comparisons) entries.push_back(fields_to_json(entry));
     write_json(folder / "comparison.json",
                {{"format", "grainlaw comparison"},
                 {"format_version", 1},
@@ -120,7 +135,7 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
                  "shear_path >= 0.01 (all rows without shear); coverage = share of these rows within the band; test "
                  "\"mean\": mean over seeds"},
                 {"dataset_digest", content.dem->digest},
-                {"comparisons", entries}});
+                {"comparisons", fields_to_json(content.comparisons)}});
   }
   OrderedJson document;
   document["format"] = "grainlaw prediction";
@@ -151,9 +166,7 @@ PredictionFolder read_prediction(const fs::path& folder) {
     if (!document.at("dem").is_null()) {
       content.dem = read_dataset(folder / "dem");
       file = folder / "comparison.json";
-      const Json comparisons = read_json(file, JsonSource::own);
-      for (const Json& entry : comparisons.at("comparisons"))
-        read_fields(entry, content.comparisons.emplace_back());
+      read_fields(read_json(file, JsonSource::own).at("comparisons"), content.comparisons);
     }
   } catch (const Json::exception& error) {
     throw InvalidInput(fmt::format("{}: is not of this version: {}; run grainlaw predict again",

@@ -38,7 +38,7 @@ struct CurveComparison {
   Rung model = Rung::evolution;
   Initial initial = Initial::law;
   std::optional<std::uint64_t> seed;  ///< none: mean over seeds (largest: of the seed where it is largest)
-  Comparison comparison;     ///< test "mean" when none
+  Comparison comparison;              ///< test "mean" when none
 };
 constexpr auto fields_of(std::type_identity<CurveComparison>) {
   using C = CurveComparison;
@@ -61,7 +61,7 @@ static_assert(tells_every_member<RungChange>());
 struct PredictionFolder {
   std::string name;  ///< last part of the folder's path
   Path path;
-  RungAdvice needed;       ///< rung that the path needs
+  RungAdvice needed;                ///< rung that the path needs
   std::vector<RungChange> changes;  ///< none where the law decides the strain: no two rows are at the same strain
   std::string bands;                ///< one line: which there are, or why there are none
   std::vector<PredictedCurve> curves;
@@ -79,6 +79,10 @@ OrderedJson rung_to_json(const PredictionFolder& content);
 
 /// Throws InvalidInput naming file and key.
 PredictionFolder read_prediction(const std::filesystem::path& folder);
+
+/// The series of a prediction as CSV, doubles bit for bit. Columns may come in any order; the columns of the bands may be missing or empty.
+void write_prediction_series(const std::filesystem::path& file, const std::vector<PredictedRow>& rows);
+std::vector<PredictedRow> read_prediction_series(const std::filesystem::path& file);
 
 /// Mean of each quantity over the seeds of a model and initial.
 std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>& comparisons);

@@ -1,12 +1,9 @@
 #pragma once
-// What the parameters change of a state along a straight segment: S_k = dy/dp_k for each parameter p_k, with
+// What the parameters change of a state along a straight segment, S_k = dy/dp_k for each parameter p_k, with
 //   dS_k/de = (df/dy) S_k + df/dp_k = [f(y + h S_k; p_k + h) - f(y - h S_k; p_k - h)]/(2h)
-// f the rate of segment_law.hpp, h = eps^(1/3) of the parameter's magnitude, where truncation, h^2 f'''/6, and rounding,
-// eps f/h, are of one size. (CVODES' own differences step by the square root of its tolerance,
-// at the default one ten times as far: far for a nu_c near jamming.) Its unknowns are a function of state and parameters, so
-// slopes of the state and slopes of the unknowns are turned into one another by the same differences. A reversal at a corner,
-// s_r := s = sigma'/P, has ds_r := ds = (dsigma' - s dP)/P. Events whose place moves with the parameters are not followed:
-// see RowSlope.
+// f the rate of segment_law.hpp (docs/theory/bands.md, section Slopes). CVODES' own differences step by the square root of
+// its tolerance, at the default one ten times as far: far for a nu_c near jamming. Events whose place moves with the
+// parameters are not followed: see RowSlope.
 
 #include <cstddef>
 #include <vector>

@@ -3,35 +3,35 @@
 // dashed lines. Curves are equations of model/ at the parameters of the files; nothing is fitted or integrated here.
 
 #include "app/report/figure.hpp"
-#include "app/report/report_input.hpp"
+#include "chain/report_input.hpp"
 
 namespace grainlaw::app::report {
 
 /// P*, C*, phi_r against nu: isotropic unloading, steady shear, Eqs. (11), (12), (14).
-Figure density_figure(const ReportInput& input);
+Figure density_figure(const chain::ReportInput& input);
 /// Eq. (15), Eq. (13) and F_v = g3 nu C on isotropic unloading.
-Figure scaled_density_figure(const ReportInput& input);
+Figure scaled_density_figure(const chain::ReportInput& input);
 
 /// Figs. 1, 4 to 8 and 10 of the paper: every run that they show, ISO, UNI and D2 from both branches.
-Figure modes_figure(const ReportInput& input);
+Figure modes_figure(const chain::ReportInput& input);
 
 /// s_par (Eq. 17) against eps_dev, a panel per density.
-Figure stress_ratio_figure(const ReportInput& input);
+Figure stress_ratio_figure(const chain::ReportInput& input);
 /// F_par (Eq. 18) likewise.
-Figure fabric_figure(const ReportInput& input);
+Figure fabric_figure(const chain::ReportInput& input);
 
 /// s_max, beta_s, F_max, beta_F against nu with Eq. (20).
-Figure shear_law_figure(const ReportInput& input);
+Figure shear_law_figure(const chain::ReportInput& input);
 
 /// Misfit of P*, s_par, F_par per calibration test of the coupled fit.
-Figure residual_figure(const ReportInput& input);
+Figure residual_figure(const chain::ReportInput& input);
 
 /// P*, s_par, F_par against eps_dev of one prediction and the DEM runs of its path, and their difference.
 Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_t index);
 
 /// E_kin/E_pot, |energy residual|, inertial number against nu on the isotropic branches.
-Figure preparation_quality_figure(const ReportInput& input);
+Figure preparation_quality_figure(const chain::ReportInput& input);
 /// The same over the course of the element tests.
-Figure shear_quality_figure(const ReportInput& input);
+Figure shear_quality_figure(const chain::ReportInput& input);
 
 }  // namespace grainlaw::app::report

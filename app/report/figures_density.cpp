@@ -11,7 +11,7 @@ constexpr std::size_t kRowsShown = 60;
 
 /// Rows of each run of isotropic unloading, called `name` and the seed; without a name they stay out of the legend.
 template <class Y>
-void add_isotropic_symbols(Panel& panel, const ReportInput& input, const char* name, const Y& y) {
+void add_isotropic_symbols(Panel& panel, const chain::ReportInput& input, const char* name, const Y& y) {
   const auto seeds = seeds_of(input.tests);
   for (const TestRecord& test : input.tests) {
     if (!is_isotropic_unloading(test)) continue;
@@ -22,7 +22,7 @@ void add_isotropic_symbols(Panel& panel, const ReportInput& input, const char* n
   }
 }
 
-void add_steady_symbols(Panel& panel, const ReportInput& input, double fit::ShearFit::*y) {
+void add_steady_symbols(Panel& panel, const chain::ReportInput& input, double fit::ShearFit::*y) {
   const auto add = [&](const fit::Calibration& calibration, Mode mode, Colour colour, Marker marker) {
     panel.series.push_back(
         through(symbols(plain("steady " + to_string(mode) + ", DEM (mean per run)"), colour, marker, 3.2),
@@ -39,7 +39,7 @@ struct Range {
 };
 
 /// From a little below jamming, where the laws begin, to the densest row.
-Range shown_range(const ReportInput& input) {
+Range shown_range(const chain::ReportInput& input) {
   const CalibratedLaw& c = input.calibration.law;
   double from = c.parameters.isotropic.pressure.nu_c;
   if (has_values(c, "steady_pressure")) from = std::min(from, c.parameters.steady.pressure.nu_c);
@@ -62,7 +62,7 @@ Panel density_panel(const char* label, const Range& range) {
 }
 
 /// One quantity of the state: runs, means of steady shear, and its law on isotropic unloading and in steady D2.
-Panel state_panel(const ReportInput& input, const char* label, const std::string& quantity,
+Panel state_panel(const chain::ReportInput& input, const char* label, const std::string& quantity,
                   double Observation::*measured, double fit::ShearFit::*steady_mean) {
   const Range range = shown_range(input);
   Panel panel = density_panel(label, range);
@@ -81,7 +81,7 @@ Panel state_panel(const ReportInput& input, const char* label, const std::string
 
 /// A quantity of isotropic unloading alone, its law where `group` is identified; symbols are named in the first panel.
 template <class Measured, class Law>
-Panel unloading_panel(const ReportInput& input, const char* label, const char* symbols_name, const Measured& measured,
+Panel unloading_panel(const chain::ReportInput& input, const char* label, const char* symbols_name, const Measured& measured,
                       const char* group, const Law& law) {
   const Range range = shown_range(input);
   Panel panel = density_panel(label, range);
@@ -94,7 +94,7 @@ Panel unloading_panel(const ReportInput& input, const char* label, const char* s
 
 }  // namespace
 
-Figure density_figure(const ReportInput& input) {
+Figure density_figure(const chain::ReportInput& input) {
   Panel pressure = state_panel(input, "pressure {P}* [–]", "P_star", &Observation::P_star, &fit::ShearFit::P_star);
   pressure.y.include = 0;
   Panel coordination =
@@ -119,7 +119,7 @@ Figure density_figure(const ReportInput& input) {
       .panel_height = 270};
 }
 
-Figure scaled_density_figure(const ReportInput& input) {
+Figure scaled_density_figure(const chain::ReportInput& input) {
   using P = LawParameters<double>;
   const double nu_c = input.calibration.law.parameters.isotropic.pressure.nu_c;
   Panel scaled = unloading_panel(

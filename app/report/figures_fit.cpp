@@ -113,7 +113,7 @@ Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quan
 
 }  // namespace
 
-Figure shear_law_figure(const ReportInput& input) {
+Figure shear_law_figure(const chain::ReportInput& input) {
   std::vector<Panel> panels;
   for (const ShearQuantity& quantity : kShearQuantities) panels.push_back(shear_panel(input.calibration, quantity));
   return {
@@ -133,8 +133,8 @@ Figure shear_law_figure(const ReportInput& input) {
       .panel_height = 200};
 }
 
-Figure residual_figure(const ReportInput& input) {
-  const std::vector<Misfit> misfits = coupled_misfits(input);
+Figure residual_figure(const chain::ReportInput& input) {
+  const std::vector<chain::Misfit> misfits = chain::coupled_misfits(input);
   std::vector<std::string> kinds;
   for (const TestRecord& test : input.tests) {
     const std::string kind = kind_of(test.path);
@@ -151,9 +151,9 @@ Figure residual_figure(const ReportInput& input) {
       for (std::size_t k = 0; k < kinds.size(); ++k) {
         Series series = through(
             open_symbols(plain(kinds[k]), colour_of(k), marker_of(k)), misfits,
-            [](const Misfit& misfit) { return misfit.test.path.nu; },
-            [&](const Misfit& misfit) { return 100 * misfit.residual.*of / misfit.residual.max_abs_data; },
-            [&, name = quantity](const Misfit& misfit) {
+            [](const chain::Misfit& misfit) { return misfit.test.path.nu; },
+            [&](const chain::Misfit& misfit) { return 100 * misfit.residual.*of / misfit.residual.max_abs_data; },
+            [&, name = quantity](const chain::Misfit& misfit) {
               return misfit.residual.quantity == name && kind_of(misfit.test.path) == kinds[k];
             });
         if (!series.x.empty()) panel.series.push_back(std::move(series));

@@ -26,7 +26,7 @@ bool in_expansion(const TestRecord& test, const Observation& row) {
   return test.path.segments[static_cast<std::size_t>(row.segment)].direction.tensor.trace() > 0;
 }
 
-const fit::Calibration* description_of(const ReportInput& input, const char* name) {
+const fit::Calibration* description_of(const chain::ReportInput& input, const char* name) {
   for (const fit::Description& d : input.modes.descriptions) {
     if (d.name == name) return &d.calibration;
   }
@@ -44,7 +44,7 @@ std::optional<double> jamming_density(const fit::Calibration& mode) {
 }
 
 /// When the compression of the packing that `test` decompresses had ended; 0 for other tests.
-double time_before(const TestRecord& test, const ReportInput& input) {
+double time_before(const TestRecord& test, const chain::ReportInput& input) {
   double before = 0;
   for (const TestRecord& loading : input.tests) {
     if (is_isotropic_unloading(test) && is_isotropic_loading(loading) && loading.packing.seed == test.packing.seed &&
@@ -55,7 +55,7 @@ double time_before(const TestRecord& test, const ReportInput& input) {
 }
 
 /// Fig. 1: compression and decompression of a packing one after the other, and its uniaxial cycle.
-Panel time_panel(const ReportInput& input) {
+Panel time_panel(const chain::ReportInput& input) {
   Panel panel = panel_of("Fig. 1", "time [ms]", kDensityLabel);
   for (const TestRecord& test : input.tests) {
     const bool isotropic = is_isotropic_unloading(test) || is_isotropic_loading(test);
@@ -69,7 +69,7 @@ Panel time_panel(const ReportInput& input) {
 }
 
 /// Figs. 4, 6, 7: `measured` over volume fraction on both branches of ISO and UNI; published: the curve of Table 2.
-void add_branches(Panel& panel, const ReportInput& input, double Observation::*measured, const DensityCurve& law) {
+void add_branches(Panel& panel, const chain::ReportInput& input, double Observation::*measured, const DensityCurve& law) {
   double from = 1, to = 0;
   for (const TestRecord& test : input.tests) {
     const bool cycle = is_uniaxial_cycle(test);
@@ -97,7 +97,7 @@ void add_branches(Panel& panel, const ReportInput& input, double Observation::*m
 }
 
 /// Fig. 10: scaled pressure over the volumetric strain from each mode's own nu_c, decompression alone; steady shear as symbols.
-Panel scaled_panel(const ReportInput& input) {
+Panel scaled_panel(const chain::ReportInput& input) {
   Panel panel = panel_of("Fig. 10", "ln({ν}/{ν}_{c}) [–]", "{P}* {ν}_{c}/({ν}{C}) [–]");
   panel.x.from = panel.y.from = 0;
   const auto add_runs = [&](const char* mode, double nu_c, Colour colour, const auto& is_of_mode) {
@@ -137,7 +137,7 @@ Panel scaled_panel(const ReportInput& input) {
 }
 
 /// Figs. 5, 8: D2 from both branches, where a density has both.
-Panel branches_of_shear(const ReportInput& input, const char* title, const char* label, double Observation::*measured) {
+Panel branches_of_shear(const chain::ReportInput& input, const char* title, const char* label, double Observation::*measured) {
   Panel panel = panel_of(title, kStrainLabel, label);
   std::vector<const TestRecord*> sheared, from_loading;
   for (const TestRecord& test : input.tests) {
@@ -161,7 +161,7 @@ Panel branches_of_shear(const ReportInput& input, const char* title, const char*
 
 }  // namespace
 
-Figure modes_figure(const ReportInput& input) {
+Figure modes_figure(const chain::ReportInput& input) {
   Panel coordination = panel_of("Figs. 4, 6", kDensityLabel, "coordination number {C}* [–]");
   coordination.y.from = 5.5;
   add_branches(coordination, input, &Observation::C_star, density_curve("C_star"));

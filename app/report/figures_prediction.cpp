@@ -50,7 +50,7 @@ struct Shown {
 };
 
 Shown shown_of(const PredictionFolder& prediction) {
-  Shown shown{prediction, dem_records(prediction)};
+  Shown shown{prediction, chain::dem_records(prediction)};
   shown.by_strain =
       std::all_of(shown.dem.begin(), shown.dem.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
       std::all_of(prediction.curves.begin(), prediction.curves.end(),

@@ -43,7 +43,7 @@ std::vector<Panel> quality_panels(const char* x_label, double x_from, double x_t
 
 }  // namespace
 
-Figure preparation_quality_figure(const ReportInput& input) {
+Figure preparation_quality_figure(const chain::ReportInput& input) {
   double lowest = 1, highest = 0;
   for (const TestRecord& test : input.tests) {
     if (!is_isotropic(test)) continue;
@@ -79,7 +79,7 @@ Figure preparation_quality_figure(const ReportInput& input) {
           .panel_height = 220};
 }
 
-Figure shear_quality_figure(const ReportInput& input) {
+Figure shear_quality_figure(const chain::ReportInput& input) {
   std::vector<const TestRecord*> sheared;
   for (const TestRecord& test : input.tests) {
     if (!is_isotropic(test)) sheared.push_back(&test);

@@ -66,7 +66,7 @@ double largest_strain(const TestRecord& test) {
 }
 
 /// A run, and Eq. (17) or (18) fitted to it where that was possible.
-void add_run(Panel& panel, const TestRecord& test, const ReportInput& input, const Saturation& what, std::size_t seed) {
+void add_run(Panel& panel, const TestRecord& test, const chain::ReportInput& input, const Saturation& what, std::size_t seed) {
   const std::string number = std::to_string(test.packing.seed);
   panel.series.push_back(through(open_symbols(plain("DEM seed " + number), colour_of(seed), marker_of(seed), 2),
                                  symbol_rows(test, 70), &Observation::eps_dev, what.measured));
@@ -81,7 +81,7 @@ void add_run(Panel& panel, const TestRecord& test, const ReportInput& input, con
   }
 }
 
-Figure saturation_figure(const ReportInput& input, const Saturation& what) {
+Figure saturation_figure(const chain::ReportInput& input, const Saturation& what) {
   std::vector<const TestRecord*> tests;
   for (const TestRecord& test : input.tests) {
     if (is_pure_shear(test)) tests.push_back(&test);
@@ -130,7 +130,7 @@ Figure saturation_figure(const ReportInput& input, const Saturation& what) {
 
 }  // namespace
 
-Figure stress_ratio_figure(const ReportInput& input) {
+Figure stress_ratio_figure(const chain::ReportInput& input) {
   return saturation_figure(
       input, {"stress-ratio",
               "Stress ratio in shear at constant volume",
@@ -144,7 +144,7 @@ Figure stress_ratio_figure(const ReportInput& input) {
               [](const LawParameters<double>& p, double nu, double e) { return reduced_stress_ratio(p, nu, 0.0, e); }});
 }
 
-Figure fabric_figure(const ReportInput& input) {
+Figure fabric_figure(const chain::ReportInput& input) {
   return saturation_figure(
       input, {"fabric",
               "Deviatoric fabric in shear at constant volume",

@@ -20,7 +20,7 @@ Block open(BlockContent content) { return {{std::move(content)}}; }
 Block folded(const std::string& summary, BlockContent content) { return {{std::move(content)}, summary}; }
 Block text(const std::string& words) { return open(Paragraph{plain(words)}); }
 
-std::vector<Block> lead(const ReportInput& input) {
+std::vector<Block> lead(const chain::ReportInput& input) {
   const auto& calibration = input.calibration;
   const auto count = [&](Role role) {
     return std::count_if(input.tests.begin(), input.tests.end(),
@@ -57,10 +57,10 @@ std::vector<Block> lead(const ReportInput& input) {
 }
 
 /// The largest pressure misfit among the constant-volume tests of the coupled fit, in words.
-std::string dilatancy_gap(const ReportInput& input) {
+std::string dilatancy_gap(const chain::ReportInput& input) {
   const auto relative = [](const fit::TestResidual& r) { return std::abs(r.bias) / r.max_abs_data; };
   const fit::TestResidual* worst = nullptr;
-  for (const auto& [residual, test] : coupled_misfits(input)) {
+  for (const auto& [residual, test] : chain::coupled_misfits(input)) {
     if (residual.quantity != "P_star" || !is_pure_shear(test)) continue;
     if (worst == nullptr || relative(residual) > relative(*worst)) worst = &residual;
   }
@@ -72,7 +72,7 @@ std::string dilatancy_gap(const ReportInput& input) {
       fixed(100 * worst->bias / worst->max_abs_data, 1), worst->test);
 }
 
-Section predictions(const ReportInput& input) {
+Section predictions(const chain::ReportInput& input) {
   Section section{"predictions", "Predictions against runs that the fit never saw", {}};
   if (input.predictions.empty()) {
     section.blocks = {text("None: the data do not identify all that a prediction needs.")};
@@ -107,7 +107,7 @@ Section checks(const fit::Calibration& calibration) {
   return section;
 }
 
-Page make_page(const ReportInput& input) {
+Page make_page(const chain::ReportInput& input) {
   const auto& calibration = input.calibration;
   const fit::ModeComparison& modes = input.modes;
   Page page{"From grains to a constitutive law", lead(input), {}};

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "app/report/report_input.hpp"
+#include "chain/report_input.hpp"
 #include "app/report/table.hpp"
 
 namespace grainlaw::app::report {
@@ -36,12 +36,12 @@ Table prediction_table(const predict::PredictionFolder& prediction);
 /// Solver statistics of every curve.
 Table solver_table(const std::vector<predict::PredictionFolder>& predictions);
 /// Per run: seed, particles, rows, steps, seconds, largest energy ratio, energy residual and inertial number.
-Table run_table(const ReportInput& input);
+Table run_table(const chain::ReportInput& input);
 /// Steps, particle-steps and seconds of the data set and of each prediction's runs.
-Table cost_table(const ReportInput& input);
+Table cost_table(const chain::ReportInput& input);
 /// Commands, versions and digests, and which files say so.
-Table provenance_table(const ReportInput& input);
-Table spec_table(const ReportInput& input);
+Table provenance_table(const chain::ReportInput& input);
+Table spec_table(const chain::ReportInput& input);
 
 /// Fixed-width text of parameter_comparison's first columns, for a terminal.
 std::string parameter_summary(const CalibratedLaw& law);

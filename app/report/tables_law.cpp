@@ -50,7 +50,7 @@ Text equation_text(const std::string& equation) {
 
 /// The paper's symbol of a parameter or curve; its name where there is none.
 Text symbol_of(const Verdict& v) {
-  if (v.is_parameter) return paper_symbol(parameter_table()[parameter_index(v.quantity)].symbol);
+  if (!v.nu) return paper_symbol(parameter_table()[parameter_index(v.quantity)].symbol);
   for (const DensityCurve& curve : density_curves()) {
     if (curve.quantity == v.quantity) return notation(curve.symbol);
   }
@@ -113,12 +113,12 @@ Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
 Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameters) {
   std::vector<Verdict> shown;
   std::copy_if(verdicts.begin(), verdicts.end(), std::back_inserter(shown),
-               [&](const Verdict& v) { return v.is_parameter == of_parameters; });
+               [&](const Verdict& v) { return !v.nu == of_parameters; });
   std::vector<ColumnOf<Verdict>> columns{
       {"mode", words, &Verdict::mode},
       {"quantity", words, &Verdict::quantity},
       {"symbol", symbol, symbol_of},
-      {"{ν}", number, [](auto& v) { return decimals(v.nu, 2); }},
+      {"{ν}", number, [](auto& v) { return decimals(*v.nu, 2); }},
       {"ours ± standard error", number, [](auto& v) { return measured(v.ours, v.standard_error); }},
       {"published", number, [](auto& v) { return digits(v.published); }},
       {"distance", number, [](auto& v) { return decimals(v.distance, 1); }},
@@ -150,7 +150,7 @@ Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
   for (const char* mode : {"ISO", "UNI", "D2", "D3"}) {
     const auto verdict_on = [&](const char* parameter) -> const Verdict* {
       const auto at = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
-        return v.is_parameter && v.mode == mode && v.quantity.ends_with(parameter);
+        return !v.nu && v.mode == mode && v.quantity.ends_with(parameter);
       });
       return at == verdicts.end() ? nullptr : &*at;
     };

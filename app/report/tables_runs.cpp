@@ -42,7 +42,7 @@ struct Run {
   bool is_cost_known() const { return cost.steps > 0; }
 };
 
-std::vector<Run> runs_of(const ReportInput& input) {
+std::vector<Run> runs_of(const chain::ReportInput& input) {
   std::vector<Run> runs;
   for (std::size_t i = 0; i < input.tests.size(); ++i) runs.push_back({input.tests[i], input.costs[i]});
   return runs;
@@ -68,7 +68,7 @@ RunSum sum_of(const std::string& files, const std::vector<Run>& runs) {
 
 }  // namespace
 
-Table run_table(const ReportInput& input) {
+Table run_table(const chain::ReportInput& input) {
   const auto energy_ratio = [](const Observation& row) { return row.E_kin / row.E_pot; };
   const auto energy_error = [](const Observation& row) { return std::abs(row.energy_residual); };
   const auto inertial_number = [](const Observation& row) { return row.inertial_number; };
@@ -91,7 +91,7 @@ Table run_table(const ReportInput& input) {
        {"largest {I}", number, [=](auto& run) { return digits(largest(values(run.test, inertial_number)), 2); }}});
 }
 
-Table cost_table(const ReportInput& input) {
+Table cost_table(const chain::ReportInput& input) {
   std::vector<RunSum> sums{sum_of("dataset/", runs_of(input))};
   for (const predict::PredictionFolder& prediction : input.predictions) {
     if (!prediction.dem) continue;
@@ -107,22 +107,22 @@ Table cost_table(const ReportInput& input) {
                    {"seconds, all runs together", number, [](auto& sum) { return digits(sum.seconds); }}});
 }
 
-Table provenance_table(const ReportInput& input) {
+Table provenance_table(const chain::ReportInput& input) {
   std::set<std::string> all;
-  for (const Fact& fact : input.provenance) all.insert(fact.files.begin(), fact.files.end());
-  const auto said_by = [&](const Fact& fact) {
+  for (const chain::Fact& fact : input.provenance) all.insert(fact.files.begin(), fact.files.end());
+  const auto said_by = [&](const chain::Fact& fact) {
     if (fact.files.size() == all.size() && all.size() > 1) return std::string("all files");
     std::string files;
     for (const std::string& file : fact.files) files += (files.empty() ? "" : ", ") + file;
     return files;
   };
   return table_of("Where this comes from", "", input.provenance,
-                  {{"what", words, &Fact::what}, {"value", words, &Fact::value}, {"said by", words, said_by}});
+                  {{"what", words, &chain::Fact::what}, {"value", words, &chain::Fact::value}, {"said by", words, said_by}});
 }
 
-Table spec_table(const ReportInput& input) {
+Table spec_table(const chain::ReportInput& input) {
   return table_of("The spec with every default resolved", "dataset/dataset.json", input.spec,
-                  {{"key", words, &Fact::what}, {"value", words, &Fact::value}});
+                  {{"key", words, &chain::Fact::what}, {"value", words, &chain::Fact::value}});
 }
 
 }  // namespace grainlaw::app::report

@@ -1,17 +1,14 @@
 #pragma once
-// What a pilot's runs say: scatter of steady means, differences between settings, seconds of work. Packings are the unit of
-// chance.
-//   steady means x_ij of shear test j on packing i, over the mean of test j:   v_within, v_between by analysis of variance
-//   x_i = sum over tests of the mean over rows, of packing i;   d = mean(x at the coarser setting)/mean(x) - 1
-// with the packings paired by seed where they are the same spheres.
-// The bias of the time step is taken as the energy that steps make or lose over the work (energy_residual): a difference of runs
-// at two steps is all scatter (docs/validation-log.md, "Modes of driving").
+// What a pilot's runs say: how steady means scatter within and between packings, how far coarser settings lie off, and the
+// seconds of work. Packings are the unit of chance, paired by seed where they are the same spheres. The bias of the time step
+// is taken as the energy residual: a difference of runs at two steps is all scatter. Formulas: docs/theory/studies.md, section
+// Wanted error.
 
 #include <string>
 #include <vector>
 
-#include "model/files/dataset.hpp"
 #include "chain/planning/precision_plan.hpp"
+#include "model/files/dataset.hpp"
 
 namespace grainlaw::chain {
 

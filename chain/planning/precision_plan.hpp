@@ -1,13 +1,9 @@
 #pragma once
 // The arithmetic of a plan: what a calibration with given settings is expected to know and to cost, from what a small pilot
-// showed, and which settings are the cheapest for a wanted error. For each quantity, relative to its largest |value|:
-//   error^2 = h^2 + b_rate^2 + b_step^2 + b_size^2
-//   h = h_0 [t_{n-1}/sqrt(n N)] / [t_{n0-1}/sqrt(n0 N0)] g(D, e)/g(D0, e0)   half width of the 95 % band, n packings of N spheres
-//   g^2 = v_between(e) + v_within(e)/D          D densities of shear to the strain e, variances of steady means
-//   b = slope times shape, systematic:   rate  (r/r_p)^0.6 - (r_w/r_p)^0.6,   step  (f/f_p)^2,   size  N_p/N
-// p: the pilot's, w: wanted, of the SPEC (predictions are meant for its strain rate; driving faster is a short cut). The orders
-// are measured ones, docs/validation-log.md, "What rate and size do". A slope is measured against a coarser setting:
-//   slope = sqrt(max(0, d^2 - se^2))/(its shape - the pilot's),   d the relative difference of the two, se its standard error
+// showed, and which settings are the cheapest for a wanted error. The error of a quantity, relative to its largest |value|
+// on the path, is the half width of its band, carried over from settings that have shown it, together with three biases that
+// more packings do not mend: of the strain rate, the time step and the size of the packings. Each bias is a slope, measured
+// against a coarser setting, times a shape. Formulas: docs/theory/studies.md, section Wanted error.
 
 #include <array>
 #include <cstdint>

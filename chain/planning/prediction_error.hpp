@@ -2,10 +2,8 @@
 // How well a calibration knows the prediction along a path, by the richest rung that is calibrated, quantity by quantity.
 // Errors are relative to the largest |value| on the path, and root mean squares over it where shear_path >= 0.01, as those of
 // predictions beside DEM are (predict/compare.hpp). More packings narrow the band of the mean curve; they do not mend the law's own
-// discrepancy, which is measured on rehearsals, DEM runs of the very path by packings of the calibration that are not fitted:
-//   D^2 = rms(m)^2 - e^2,   m the mean over packings of DEM - law,   e^2 = mean square standard error of m + (h/t)^2
-// h the band's half width, t Student's factor in it. The rows of a run belong together, so that all of them count as one normal
-// number: the error of D^2 is sqrt(4 D^2 e^2 + 2 e^4).
+// discrepancy D, which is measured on rehearsals, DEM runs of the very path by packings of the calibration that are not
+// fitted (docs/theory/studies.md, section Discrepancy).
 
 #include <string>
 #include <vector>

@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "chain/planning/plan_file.hpp"
 #include "chain/planning/plan_pilot.hpp"
 #include "chain/planning/planned_spec.hpp"
 #include "model/files/output.hpp"
@@ -37,18 +36,16 @@ PlanSettings smaller(PlanSettings pilot) {
 }
 
 /// The pilot's findings from its own runs and those at the coarser settings.
-PlanFindings findings_of(const PrecisionTarget& target, const Scale& scale,
-                                const PredictionError& known, const std::vector<TestRecord>& tests,
-                                const std::vector<TestRecord>& of_faster, const std::vector<TestRecord>& of_smaller,
-                                const CostRates& rates) {
+PlanFindings findings_of(const PrecisionTarget& target, const Scale& scale, const PredictionError& known,
+                         const std::vector<TestRecord>& tests, const std::vector<TestRecord>& of_faster,
+                         const std::vector<TestRecord>& of_smaller, const CostRates& rates) {
   const PlanSettings& pilot = scale.pilot;
   const auto apart = [&](Cause cause, const PlanSettings& coarse) {
     return shape(cause, coarse, scale) - shape(cause, pilot, scale);
   };
   PlanFindings findings{scale, pilot, {}, rates};
   for (const std::string& quantity : target.quantities) {
-    QuantityFindings q{
-        quantity, std::nan(""), steady_scatter(tests, quantity, plan_strains(pilot)), {}};
+    QuantityFindings q{quantity, std::nan(""), steady_scatter(tests, quantity, plan_strains(pilot)), {}};
     for (const QuantityPrecision& p : known.quantities) {
       if (p.quantity == quantity) q.half_width = p.half_width;
     }
@@ -97,10 +94,10 @@ TargetCalibration calibrate_for(const PrecisionTarget& target, const dem::Spec& 
                                 const fit::CalibrationOptions& options, const fs::path& output,
                                 const Execution& execution) {
   if (spec.preparation.drive.quasi_static_step > 0)
-    throw InvalidInput(
-        fmt::format("{}: quasi_static_step: a plan chooses strain rate and time step, which minimised steps do not have; "
-                    "leave it 0",
-                    name));
+    throw InvalidInput(fmt::format(
+        "{}: quasi_static_step: a plan chooses strain rate and time step, which minimised steps do not have; "
+        "leave it 0",
+        name));
   const PlanSettings pilot = pilot_settings(spec);
   const Work pilot_work = work_of(planned_spec(spec, pilot, target.path));
   const auto at = [&](const PlanSettings& settings) { return planned_spec(spec, settings, target.path); };
@@ -119,8 +116,9 @@ TargetCalibration calibrate_for(const PrecisionTarget& target, const dem::Spec& 
           simulate_data_set(rounds_of(at(settings)), make_subfolder(folder, subfolder), output, execution, counts),
           Role::calibration);
     };
-    return findings_of(target, {pilot, spec.preparation.drive.strain_rate}, known, tests_of(last.dataset, Role::calibration),
-                       coarser("faster", faster(pilot)), coarser("smaller", smaller(pilot)), rates);
+    return findings_of(target, {pilot, spec.preparation.drive.strain_rate}, known,
+                       tests_of(last.dataset, Role::calibration), coarser("faster", faster(pilot)),
+                       coarser("smaller", smaller(pilot)), rates);
   };
   std::map<std::pair<int, double>, Work> works;  // by what does not scale
   actions.work = [&](const PlanSettings& settings) {

@@ -8,6 +8,7 @@
 
 #include "chain/planning/precision_plan.hpp"
 #include "chain/planning/prediction_error.hpp"
+#include "model/files/json_document.hpp"
 
 namespace grainlaw::chain {
 
@@ -59,5 +60,10 @@ std::string text_of(const PlanSettings& settings);
 
 /// "memory rung: P_star 1.2 % (band 1.1, rate ...)".
 std::string text_of(const TargetRound& round);
+
+/// What plan.json holds: what was asked for, what the pilot found, which plans were considered and what was reached.
+/// `overrides`: keys of the user's SPEC that the plan has replaced, with their values in the last round.
+OrderedJson plan_to_json(const TargetRun& run, const PrecisionTarget& target, const Json& overrides,
+                         const OrderedJson& provenance);
 
 }  // namespace grainlaw::chain

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "chain/studies/settings_study.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {

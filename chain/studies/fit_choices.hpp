@@ -6,9 +6,9 @@
 //   shear_strain=f     shear at constant volume up to this fraction of its strain; costs as much less
 //   loss=huber         rows that are far off count for less
 
-#include "model/files/dataset.hpp"
-#include "chain/studies/key_changes.hpp"
+#include "chain/studies/settings_study.hpp"
 #include "fit/data/options.hpp"
+#include "model/files/dataset.hpp"
 
 namespace grainlaw::chain {
 

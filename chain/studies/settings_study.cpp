@@ -7,6 +7,7 @@
 
 #include "dem/element_tests/element_run.hpp"
 #include "dem/element_tests/energy_watch.hpp"
+#include "model/files/fields_json.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::chain {
@@ -209,6 +210,32 @@ void find_dominated(SettingsStudy& study, const std::vector<LeftOut>& left_out) 
   }
 }
 
+OrderedJson result_to_json(const SettingResult& r) {
+  const SettingOutcome& outcome = r.outcome;
+  OrderedJson object{{"setting", outcome.name}};
+  OrderedJson& changes = object["changes"] = OrderedJson::object();
+  for (const auto& [key, value] : outcome.changes) changes[key] = value;
+  object["packings"] = outcome.seeds.size();
+  object["particle_steps"] = outcome.cost.particle_steps;
+  object["seconds"] = outcome.cost.seconds;
+  object["fit_seconds"] = outcome.cost.fit_seconds;
+  object["energy_residual"] = outcome.energy_residual;
+  object["model"] = outcome.model.empty() ? OrderedJson() : OrderedJson(outcome.model);
+  object["same_packings"] = !outcome.compared_with.empty();
+  object["error"] = number_or_null(r.error);
+  object["floor"] = number_or_null(r.floor);
+  object["sampling"] = number_or_null(r.sampling);
+  object["noise"] = number_or_null(r.noise);
+  object["reached"] = number_or_null(r.reached);
+  object["reached_standard_error"] = number_or_null(r.reached_error);
+  object["dominated"] = !r.dominated_by.empty();
+  object["dominated_by"] = r.dominated_by;
+  object["perhaps_dominated_by"] = r.perhaps_dominated_by;
+  object["note"] = outcome.note;
+  object["quantities"] = fields_to_json(r.errors);
+  return object;
+}
+
 }  // namespace
 
 Cost cost_of(const Dataset& dataset) {
@@ -264,6 +291,21 @@ SettingsStudy study_of(const std::string& kind, const std::string& error, Packin
   }
   find_dominated(study, left_out);
   return study;
+}
+
+OrderedJson study_to_json(const SettingsStudy& study) {
+  OrderedJson document = {{"format", "grainlaw study"}, {"format_version", 1}, {"study", study.kind}};
+  document["base"] = study.base;
+  document["error"] = study.error;
+  document["reference"] = study.results.front().outcome.name;
+  const SettingResult& judged = study.results.at(study.judged);
+  document["default"] = {{"setting", judged.outcome.name},
+                         {"dominated", !judged.dominated_by.empty()},
+                         {"dominated_by", judged.dominated_by},
+                         {"perhaps_dominated_by", judged.perhaps_dominated_by}};
+  OrderedJson& all = document["settings"] = OrderedJson::array();
+  for (const SettingResult& r : study.results) all.push_back(result_to_json(r));
+  return document;
 }
 
 }  // namespace grainlaw::chain

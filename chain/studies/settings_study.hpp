@@ -1,31 +1,26 @@
 #pragma once
-// What settings cost, and how far their results are from those of a reference. Over the quantities of a setting,
-//   error^2    = mean of their squared errors            floor^2    = mean of their squared standard errors
-//   sampling^2 = mean of their squared 95 % intervals    reached^2  = max(error^2 - floor^2, 0) + noise^2
-// error^2 - floor^2 estimates the square of what the setting itself does. The noise that comes on top is the floor where all
-// settings have the same packings, of which only differences count, and sampling where packings are chosen, too: the interval
-// is all that users of the setting have, and few packings do not know their own scatter (two: t = 12.7). Nor does a time step or
-// a rate change how packings scatter: among settings that differ only in how they compute, floor and sampling are pooled (root mean
-// square), lest a setting dominate by a scatter that happens to come out small.
-// With the same packings each quantity counts in units of its own chance, its standard error pooled likewise: P_star is known to 1 %
-// where F_max is to 10 and a rate beta to 30, and among relative errors the chance of the last would be all that is seen. The floor
-// is one by definition, and an error of two is twice what chance does. Where packings are chosen errors are relative.
-// A setting whose energy residual comes nearer than half to the one that stops a run dominates none that keeps away: its next data set
-// may not be finished. Costs are counted in particle-steps; seconds are beside them.
-// What is reached is known as well as a few packings tell. A setting that costs no more dominates where its reached^2 is less beyond
-// chance: by t errors of the difference, t for one in twenty verdicts on a setting however many cost no more. That error is the
-// jackknife's, each packing left out in turn of all settings that have it, and 2 floor^4 of both; the squares are those before max(),
-// or chance below the floor would count as none. Where it is less but not beyond chance, a setting that costs less perhaps dominates.
+// What settings cost, how far their results are from those of a reference, and which of them others dominate
+// (docs/theory/studies.md, sections Error of a setting and Dominance).
+// An error is the root mean square over the quantities that a setting shows. What chance alone would do to it is its floor,
+// and `reached` is what users of the setting get: the error beyond the floor, and on top of it the noise that they cannot
+// average away. With the same packings at every setting errors count in units of the chance of their quantity, and the
+// floor is one; where packings are chosen, too, errors are relative. Costs are counted in particle-steps. One setting
+// dominates another if it costs no more, shows as much, is as safe from the energy balance's stop, and reaches less by more
+// than chance explains.
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "model/files/dataset.hpp"
-#include "chain/studies/key_changes.hpp"
 #include "chain/studies/study_quantity.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/json_document.hpp"
 
 namespace grainlaw::chain {
+
+/// The changes that make one setting out of another: keys and the values to give them.
+using Changes = std::vector<std::pair<std::string, Json>>;
 
 enum class Packings {
   given,   ///< the same at every setting
@@ -84,5 +79,8 @@ struct SettingsStudy {
 /// Compares with the first of `outcomes`, and finds who dominates whom; a reference that is not judged takes no part.
 SettingsStudy study_of(const std::string& kind, const std::string& error, Packings packings, const Json& base,
                        const std::vector<SettingOutcome>& outcomes, std::size_t judged);
+
+/// What study.json holds, provenance aside.
+OrderedJson study_to_json(const SettingsStudy& study);
 
 }  // namespace grainlaw::chain

@@ -6,13 +6,20 @@
 #include <string>
 #include <vector>
 
-#include "model/files/dataset.hpp"
-#include "dem/runs/spec_file.hpp"
-#include "model/files/execution.hpp"
-#include "chain/studies/key_changes.hpp"
 #include "chain/studies/settings_study.hpp"
+#include "dem/runs/spec_file.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/execution.hpp"
 
 namespace grainlaw::chain {
+
+/// Parses "key=value" of the command line: a number or a list as in JSON, else text. Throws InvalidInput.
+std::pair<std::string, Json> change_from(const std::string& text);
+Changes changes_from(const std::vector<std::string>& texts);
+
+/// `document` with `changes`. A key may lead into what is there, e.g. "tests[1].strain". Throws InvalidInput when there is
+/// nothing at such a place, naming `name`.
+Json changed(Json document, const Changes& changes, const std::string& name);
 
 struct SpecSetting {
   std::string name;  ///< "base", "reference", "time_step_fraction=0.2", ...
@@ -34,7 +41,8 @@ Dataset run_setting(const SpecSetting& setting, const std::filesystem::path& out
 
 /// What each setting has shown, by `show`. One after `judged` that fails, as a time step does that the engine refuses to go on
 /// with, shows nothing but its note; the study goes on.
-std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged, const Execution& execution,
+std::vector<SettingOutcome> outcomes_of(const std::vector<SpecSetting>& settings, std::size_t judged,
+                                        const Execution& execution,
                                         const std::function<SettingOutcome(const SpecSetting&)>& show);
 
 }  // namespace grainlaw::chain

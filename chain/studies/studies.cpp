@@ -4,8 +4,7 @@
 
 #include "chain/studies/calibrated_setting.hpp"
 #include "chain/studies/fit_choices.hpp"
-#include "chain/studies/packing_quantities.hpp"
-#include "chain/studies/reference_by_packings.hpp"
+#include "chain/studies/law_quantities.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
@@ -41,8 +40,8 @@ FitChoice everything_in(const std::filesystem::path& folder, int threads) {
     throw InvalidInput(fmt::format("{}: one packing has no scatter; give a data set of two or more", folder.string()));
   choice.options.threads = threads;
   if (!choice.dataset.spec.is_null())
-    choice.options.coupling =
-        value_of<Coupling>(dem::spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling, "coupling");
+    choice.options.coupling = value_of<Coupling>(
+        dem::spec_from_json(choice.dataset.spec, (folder / "dataset.json").string() + ": spec").coupling, "coupling");
   return choice;
 }
 
@@ -82,7 +81,7 @@ SettingsStudy study_engine(const std::vector<SpecSetting>& settings, const std::
             ""};
   };
   return study_of("dem", kErrorOfPackings, Packings::given, Json(dem::spec_to_json(base.spec)),
-                                       outcomes_of(settings, 1, execution, show), 1);
+                  outcomes_of(settings, 1, execution, show), 1);
 }
 
 SettingsStudy study_chain(const std::vector<SpecSetting>& settings, std::size_t judged, const Path& path,
@@ -108,8 +107,8 @@ SettingsStudy study_chain(const std::vector<SpecSetting>& settings, std::size_t 
     return outcome;
   };
   const std::vector<SettingOutcome> outcomes = outcomes_of(settings, judged, execution, show);
-  return study_of("chain", kErrorOfPrediction, Packings::chosen,
-                                       Json(dem::spec_to_json(settings[judged].spec)), outcomes, judged);
+  return study_of("chain", kErrorOfPrediction, Packings::chosen, Json(dem::spec_to_json(settings[judged].spec)),
+                  outcomes, judged);
 }
 
 SettingsStudy study_fit(const std::filesystem::path& dataset, const std::optional<Path>& path,

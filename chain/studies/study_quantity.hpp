@@ -1,15 +1,15 @@
 #pragma once
-// What the packings of a setting say of one quantity, and how far that is from a reference. psi_c is what packing c moved the
-// value by, x_i a value (of a number, or of a curve at its points), r_i the reference's:
-//   d_i = (x_i - r_i)/max|r|,   variance of d_i = sum over packings of (psi_i,c - psi^r_i,c)^2/max|r|^2
-// Packings are the same if their seeds are; what both owe to one packing cancels. Numbers: error = d. Curves: error = root
-// mean square of d_i over the points, its standard error likewise.
+// What the packings of a setting say of one quantity, a number or a curve at its points, and how far that is from a
+// reference. psi_c is what packing c moved a value by; packings are the same if their seeds are, and what both owe to one
+// packing cancels. Formulas: docs/theory/studies.md, section Quantities of a setting.
 
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include "model/vocabulary/fields.hpp"
 
 namespace grainlaw::chain {
 
@@ -32,10 +32,21 @@ struct QuantityError {
   double sampling = 0;        ///< half width of the 95 % interval of the values themselves, relative as `error` [-]
   double chance = kMissing;   ///< standard error pooled over settings that scatter alike: a unit of errors [-]
 };
+constexpr auto fields_of(std::type_identity<QuantityError>) {
+  using E = QuantityError;
+  return std::tuple{Field{&E::quantity, "quantity"},
+                    Field{&E::in_error, "in_error"},
+                    Field{&E::value, "value"},
+                    Field{&E::error, "error"},
+                    Field{&E::standard_error, "standard_error"},
+                    Field{&E::half_width, "half_width"},
+                    Field{&E::sampling, "sampling"},
+                    Field{&E::chance, "chance"}};
+}
+static_assert(tells_every_member<QuantityError>());
 
 /// The same without the packing of column `c`, to first order (exactly where a value is the mean of the packings); not shown with
-/// fewer than three:
-///   x' = x - psi_c sqrt(n/(n - 1)),   psi_k' = (psi_k sqrt(n (n - 1)) + psi_c sqrt(n/(n - 1)))/sqrt((n - 1)(n - 2))
+/// fewer than three.
 StudyQuantity without_packing(const StudyQuantity& quantity, Eigen::Index c);
 
 /// Seeds in the order of the columns of `influence`.

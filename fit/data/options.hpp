@@ -3,6 +3,7 @@
 
 #include "fit/statistics/problem.hpp"
 #include "model/parameters.hpp"
+#include "model/vocabulary/fields.hpp"
 
 namespace grainlaw::fit {
 
@@ -23,6 +24,22 @@ struct CalibrationOptions {
   bool profiles = false;  ///< of doubtful parameters, profile.hpp
   int threads = 1;        ///< results do not depend on it
 };
+/// What calibration.json keeps of them as `options`; the coupling stands beside them.
+constexpr auto fields_of(std::type_identity<CalibrationOptions>) {
+  using O = CalibrationOptions;
+  return std::tuple{Field{&O::iso_nu_min, "iso_nu_min"},
+                    Field{&O::rate_window, "rate_window"},
+                    Field{&O::steady_from, "steady_from"},
+                    Field{&O::steady_weight, "steady_weight"},
+                    Field{&O::stiffness_window, "stiffness_window"},
+                    Field{&O::lag_window, "lag_window"},
+                    Field{&O::max_step, "max_step"},
+                    Field{&O::pressure_scale, "pressure_scale"},
+                    Field{&O::stress_scale, "stress_scale"},
+                    Field{&O::fabric_scale, "fabric_scale"},
+                    Field{&O::loss, "loss"},
+                    Field{&O::starts, "starts"}};
+}
 
 /// Throws InvalidInput naming the field that is not finite, not positive or out of order.
 void check(const CalibrationOptions& options);

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "fit/statistics/curve_error.hpp"
+#include "model/density_curves.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::fit {

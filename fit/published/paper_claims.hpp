@@ -20,6 +20,14 @@ struct Claim {
   double published = 0;       ///< NaN: only the sign is said, ours should be above zero
   std::string verdict;        ///< "agrees", "differs", "undecided" (a sign within its error), "no error"
 };
+constexpr auto fields_of(std::type_identity<Claim>) {
+  using C = Claim;
+  return std::tuple{
+      Field{&C::where, "where"},    Field{&C::statement, "statement"},           Field{&C::nu, "nu"},
+      Field{&C::ours, "ours"},      Field{&C::standard_error, "standard_error"}, Field{&C::published, "published"},
+      Field{&C::verdict, "verdict"}};
+}
+static_assert(tells_every_member<Claim>());
 
 /// Half of the last digit that the paper prints, 0 for what is exact.
 struct Printed {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "fit/statistics/curve_error.hpp"
+#include "model/density_curves.hpp"
 #include "model/student.hpp"
 
 namespace grainlaw::fit {
@@ -44,7 +44,7 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
     const Estimate& estimate = law.estimates[i];
     const bool stands_for_itself = estimate.status != Status::fixed && !name.starts_with("anisotropy");
     if (!info.published || whose.empty() || !stands_for_itself) continue;
-    Verdict v{whose, info.name, true, 0, estimate.value, estimate.standard_error, *fields(published)[i], 0, ""};
+    Verdict v{whose, info.name, std::nullopt, estimate.value, estimate.standard_error, *fields(published)[i], 0, ""};
     judge(v, estimate.status != Status::not_identified, packings);
     all.push_back(v);
   }
@@ -56,7 +56,6 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
       if (nu < law.range.nu_min - 1e-6 || nu > law.range.nu_max + 1e-6) continue;
       Verdict v{whose,
                 curve.quantity,
-                false,
                 nu,
                 curve.of(law.parameters, nu),
                 standard_error(law, curve, nu),

@@ -4,6 +4,7 @@
 // packings and one other packing, which is what the paper shows: SE sqrt(n + 1), under the assumption that the paper's
 // packing scatters like ours. "agrees" within the 95 % range of Student's t with n - 1 degrees of freedom.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,14 +16,25 @@ namespace grainlaw::fit {
 struct Verdict {
   std::string mode;           ///< "ISO", "UNI", "D2", "D3", "D2-loading"
   std::string quantity;       ///< name of the parameter or curve, e.g. "coordination.C1", "P_star"
-  bool is_parameter = false;  ///< of a table; false: value of a curve at `nu`
-  double nu = 0;              ///< of a curve [-]
+  std::optional<double> nu;   ///< of a value of a curve; none: a parameter of a table [-]
   double ours = 0;            ///< NaN when not identified [-]
   double standard_error = 0;  ///< NaN where there is none [-]
   double published = 0;       ///< [-]
   double distance = 0;        ///< difference over SE sqrt(n + 1); NaN without an error
   std::string verdict;        ///< "agrees", "differs", "no error", "not identified"
 };
+constexpr auto fields_of(std::type_identity<Verdict>) {
+  using V = Verdict;
+  return std::tuple{Field{&V::mode, "mode"},
+                    Field{&V::quantity, "quantity"},
+                    Field{&V::nu, "nu"},
+                    Field{&V::ours, "ours"},
+                    Field{&V::standard_error, "standard_error"},
+                    Field{&V::published, "published"},
+                    Field{&V::distance, "distance"},
+                    Field{&V::verdict, "verdict"}};
+}
+static_assert(tells_every_member<Verdict>());
 
 /// The modes besides the calibration's own, and how all of them compare with what was published.
 struct ModeComparison {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fit/stages/evolution_blocks.hpp"
+#include "fit/stages/evolution_fit.hpp"
 
 namespace grainlaw::fit {
 

@@ -57,6 +57,30 @@ Eigen::VectorXd factors_of(const std::vector<ResidualBlock>& blocks, const Eigen
   return factor;
 }
 
+/// The converged solution of lowest cost, the first one when none is.
+Solution best_of(std::vector<Solution> solutions, StartSearch& search) {
+  double rounding = 0;
+  for (const Solution& solution : solutions) rounding = std::max(rounding, kExactCost * solution.initial_cost);
+  const auto within = [&](double cost, double least) { return cost <= least * (1 + kSameCost) + rounding; };
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < solutions.size(); ++i) {
+    const Solution &a = solutions[i], &b = solutions[best];
+    if (a.converged && (!b.converged || !within(b.final_cost, a.final_cost))) best = i;
+  }
+  search = {static_cast<int>(solutions.size()), 0, std::nan("")};
+  for (const Solution& solution : solutions) {
+    if (!solution.converged) continue;
+    if (within(solution.final_cost, solutions[best].final_cost))
+      ++search.at_minimum;
+    else if (!(solution.final_cost >= search.next_cost))
+      search.next_cost = solution.final_cost;
+  }
+  double seconds = 0;
+  for (const Solution& solution : solutions) seconds += solution.seconds;
+  solutions[best].seconds = seconds;
+  return std::move(solutions[best]);
+}
+
 }  // namespace
 
 Solution solve_huber(const Problem& problem, int threads, const std::string& stage, const RunControl& control) {
@@ -110,29 +134,6 @@ std::vector<FreeParameter> start_number(const std::vector<FreeParameter>& from, 
     p.start = std::clamp(p.start, p.lower, p.upper);
   }
   return parameters;
-}
-
-Solution best_of(std::vector<Solution> solutions, StartSearch& search) {
-  double rounding = 0;
-  for (const Solution& solution : solutions) rounding = std::max(rounding, kExactCost * solution.initial_cost);
-  const auto within = [&](double cost, double least) { return cost <= least * (1 + kSameCost) + rounding; };
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < solutions.size(); ++i) {
-    const Solution &a = solutions[i], &b = solutions[best];
-    if (a.converged && (!b.converged || !within(b.final_cost, a.final_cost))) best = i;
-  }
-  search = {static_cast<int>(solutions.size()), 0, std::nan("")};
-  for (const Solution& solution : solutions) {
-    if (!solution.converged) continue;
-    if (within(solution.final_cost, solutions[best].final_cost))
-      ++search.at_minimum;
-    else if (!(solution.final_cost >= search.next_cost))
-      search.next_cost = solution.final_cost;
-  }
-  double seconds = 0;
-  for (const Solution& solution : solutions) seconds += solution.seconds;
-  solutions[best].seconds = seconds;
-  return std::move(solutions[best]);
 }
 
 Solution minimise(const Problem& problem, int starts, int threads, const std::string& stage, const RunControl& control,

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "fit/statistics/least_squares.hpp"
+#include "model/vocabulary/fields.hpp"
 
 namespace grainlaw::fit {
 
@@ -19,6 +20,11 @@ struct StartSearch {
   int tried = 1, at_minimum = 1;                                ///< starts; those that ended at the lowest cost
   double next_cost = std::numeric_limits<double>::quiet_NaN();  ///< of the next minimum; NaN: there is none
 };
+constexpr auto fields_of(std::type_identity<StartSearch>) {
+  using S = StartSearch;
+  return std::tuple{Field{&S::tried, "tried"}, Field{&S::at_minimum, "at_minimum"}, Field{&S::next_cost, "next_cost"}};
+}
+static_assert(tells_every_member<StartSearch>());
 
 /// The best of `starts` (at least 1) solutions of the problem by its loss, and in `search` how many of them ended there.
 Solution minimise(const Problem& problem, int starts, int threads, const std::string& stage, const RunControl& control,
@@ -29,8 +35,5 @@ Solution solve_huber(const Problem& problem, int threads, const std::string& sta
 
 /// Of the parameters `from`, number `which` (0: as given) of the starts.
 std::vector<FreeParameter> start_number(const std::vector<FreeParameter>& from, int which);
-
-/// The converged solution of lowest cost, the first one when none is.
-Solution best_of(std::vector<Solution> solutions, StartSearch& search);
 
 }  // namespace grainlaw::fit

@@ -23,6 +23,12 @@ void read_fields(const Json& json, T& object);
 template <HasFields T>
 void read_given_fields(const Json& json, T& object);
 
+/// Lists of them as arrays.
+template <HasFields T>
+OrderedJson fields_to_json(const std::vector<T>& list);
+template <HasFields T>
+void read_fields(const Json& json, std::vector<T>& list);
+
 namespace detail {
 
 template <class Value>
@@ -97,6 +103,15 @@ void read_fields(const Json& json, T& object) {
 template <HasFields T>
 void read_given_fields(const Json& json, T& object) {
   detail::read(json, object, false);
+}
+
+template <HasFields T>
+OrderedJson fields_to_json(const std::vector<T>& list) {
+  return detail::to_json(list);
+}
+template <HasFields T>
+void read_fields(const Json& json, std::vector<T>& list) {
+  detail::take(json, "", list);
 }
 
 }  // namespace grainlaw

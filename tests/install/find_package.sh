@@ -7,7 +7,7 @@ cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 
 cmake --install "$build" --prefix "$PWD/first" >log || fail "$(cat log)"
 mv first moved
-for file in bin/grainlaw lib/libgrainlaw_{model,dem,fit,predict}.a lib/cmake/grainlaw/grainlaw-config.cmake \
+for file in bin/grainlaw lib/libgrainlaw_{model,dem,fit,predict,chain}.a lib/cmake/grainlaw/grainlaw-config.cmake \
   include/grainlaw/dem/element_tests/element_run.hpp share/doc/grainlaw/{LICENSE,CITATION.cff,README.md} \
   share/doc/grainlaw/docs/formats.md share/doc/grainlaw/docs/schemas/spec.schema.json; do
   [[ -s moved/$file ]] || fail "not installed: $file"
@@ -20,7 +20,7 @@ binaries=()
 for path in "$source" "$build" "$PWD/first"; do
   ! grep -rlF "${binaries[@]}" "$path" moved >found || fail "$path is named in $(cat found)"
 done
-! grep -rlE '#include <(ceres|cvodes?|nvector|sun[a-z]+|sundials|Random123|nlohmann)/' moved/include >found ||
+! grep -rlE '#include <(ceres|cvodes?|nvector|sun[a-z]+|sundials|Random123|valijson)/' moved/include >found ||
   fail "headers that no user has to have, in $(cat found)"
 
 # As in an account that never saw the build: no variables, another home, only the compiler and the generator alike.

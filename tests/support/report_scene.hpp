@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/report_input.hpp"
+#include "chain/report_input.hpp"
 #include "model/reduced_law.hpp"
 
 namespace grainlaw::test {
@@ -142,10 +142,10 @@ inline predict::PredictionFolder make_prediction(const std::string& name, double
 }
 
 /// Two seeds, six densities, ISO both branches, D2, D2 then ISO; two predictions. Numbers follow published_parameters().
-inline app::report::ReportInput report_scene() {
+inline chain::ReportInput report_scene() {
   std::mt19937_64 generator(7);
   const LawParameters<double> p = published_parameters();
-  app::report::ReportInput input;
+  chain::ReportInput input;
   fit::Calibration& c = input.calibration;
   c.law.parameters = p;
   c.law.converged = true;

@@ -96,6 +96,7 @@ class SyntheticDataset {
     LawState<double> y{.P = law_.isotropic.P_star(nu)};
     for (std::size_t k = 0; k < path.size(); ++k) {
       const StraightSegment& segment = path[k];
+      turn_corner(options_.rung, y, law_direction(segment.direction));
       const double jump = law_.steady.P_star(segment.nu_start) / y.P - 1;  // to the steady pressure
       LawState<double> seen = y;
       for (int i = k == 0 ? 0 : 1; i <= options_.rows; ++i) {

@@ -6,12 +6,12 @@
 
 #include "app/exit_code.hpp"
 #include "chain/planning/precision_plan.hpp"
+#include "dem/runs/spec_file.hpp"
 #include "model/calibrated_law.hpp"
 #include "model/files/column.hpp"
 #include "model/files/schema.hpp"
 #include "model/vocabulary/probe_row.hpp"
-#include "predict/prediction_series.hpp"
-#include "dem/runs/spec_file.hpp"
+#include "predict/prediction_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {
@@ -65,7 +65,9 @@ std::string column_table(const std::vector<Column<Row>>& columns) {
   return table;
 }
 
-TEST(FormatsDocument, ListsTheColumnsOfTests) { expect_section("series columns", column_table(columns_of<Observation>())); }
+TEST(FormatsDocument, ListsTheColumnsOfTests) {
+  expect_section("series columns", column_table(columns_of<Observation>()));
+}
 TEST(FormatsDocument, ListsTheColumnsOfPredictions) {
   expect_section("prediction columns", column_table(columns_of<predict::PredictedRow>()));
 }

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstring>
 
-#include "model/parameters_file.hpp"
 #include "fit/calibrate.hpp"
 #include "model/files/column.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/series_csv.hpp"
-#include "predict/prediction_series.hpp"
+#include "model/parameters_file.hpp"
+#include "predict/prediction_files.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/german_locale.hpp"
 #include "tests/support/synthetic_dataset.hpp"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/report/report_input.hpp"
+#include "chain/report_input.hpp"
 #include "app/report/series.hpp"
 #include "fit/calibration_file.hpp"
 #include "model/files/dataset.hpp"
@@ -43,7 +43,7 @@ class ReportFolder : public ::testing::Test {
     dir_ = fs::path(::testing::TempDir()) /
            ("report-" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(dir_);
-    report::ReportInput scene = test::report_scene();
+    chain::ReportInput scene = test::report_scene();
     const Dataset dataset = write_tests(dir_ / "dataset", scene.tests);
     scene.calibration.law.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
     scene.calibration.law.dataset_digest = dataset.digest;

@@ -1,6 +1,6 @@
-#include "predict/prediction_series.hpp"
-#include "model/files/column.hpp"
 #include "model/files/series_csv.hpp"
+#include "model/files/column.hpp"
+#include "predict/prediction_files.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -164,9 +164,10 @@ TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
     EXPECT_LT((rows[i].state.sigma - prediction.rows[i].state.sigma).norm(), 1e-15);
     EXPECT_LT((rows[i].state.F - prediction.rows[i].state.F).norm(), 1e-15);
   }
-  EXPECT_NE(
-      refusal([&] { predict::read_prediction_series(put("q.csv", "segment\n0\n")); }).find("misses the column 'strain_xx'"),
-      std::string::npos);
+  EXPECT_NE(refusal([&] {
+              predict::read_prediction_series(put("q.csv", "segment\n0\n"));
+            }).find("misses the column 'strain_xx'"),
+            std::string::npos);
 }
 
 }  // namespace

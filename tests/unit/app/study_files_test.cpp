@@ -5,11 +5,11 @@
 #include <set>
 #include <tuple>
 
-#include "model/files/schema.hpp"
-#include "app/report/svg_figure.hpp"
 #include "app/report/figure_study.hpp"
-#include "chain/studies/study_json.hpp"
-#include "app/commands/study_table.hpp"
+#include "app/report/svg_figure.hpp"
+#include "app/terminal/study_text.hpp"
+#include "chain/studies/settings_study.hpp"
+#include "model/files/schema.hpp"
 #include "model/student.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -24,7 +24,7 @@ chain::SettingOutcome outcome(const std::string& name, double cost, double value
 
 chain::SettingsStudy study(double cheap) {
   return chain::study_of("chain", "in words", chain::Packings::chosen, {{"rows", 40}},
-                  {outcome("base", 1e9, 1), outcome("cheap", 5e8, cheap), outcome("dear", 2e9, 1.2)}, 0);
+                         {outcome("base", 1e9, 1), outcome("cheap", 5e8, cheap), outcome("dear", 2e9, 1.2)}, 0);
 }
 
 TEST(StudyFiles, FollowTheSchema) {
@@ -43,20 +43,20 @@ TEST(StudyFiles, FollowTheSchema) {
 }
 
 TEST(StudyFiles, TheTableSaysWhetherTheDefaultIsDominated) {
-  EXPECT_NE(study_table(study(1.1)).find("base is not dominated\n"), std::string::npos);
-  EXPECT_NE(study_table(study(1)).find("base is dominated by cheap\n"), std::string::npos);
+  EXPECT_NE(study_text(study(1.1)).find("base is not dominated\n"), std::string::npos);
+  EXPECT_NE(study_text(study(1)).find("base is dominated by cheap\n"), std::string::npos);
   chain::SettingsStudy toss = study(1);
   std::swap(toss.results[0].dominated_by, toss.results[0].perhaps_dominated_by);
-  EXPECT_NE(study_table(toss).find("base may be dominated: cheaper and as good or better, within chance: cheap\n"),
+  EXPECT_NE(study_text(toss).find("base may be dominated: cheaper and as good or better, within chance: cheap\n"),
             std::string::npos)
       << "what chance leaves open is not called undominated";
   chain::SettingsStudy bold = study(1.1);
-  EXPECT_EQ(study_table(bold).find("near the energy balance's stop"), std::string::npos);
+  EXPECT_EQ(study_text(bold).find("near the energy balance's stop"), std::string::npos);
   bold.results[1].outcome.energy_residual = 0.009;
-  EXPECT_NE(study_table(bold).find("near the energy balance's stop"), std::string::npos);
+  EXPECT_NE(study_text(bold).find("near the energy balance's stop"), std::string::npos);
   chain::SettingsStudy nothing = study(1);
   nothing.results[0].reached = std::nan("");
-  EXPECT_NE(study_table(nothing).find("base shows nothing to be judged by\n"), std::string::npos);
+  EXPECT_NE(study_text(nothing).find("base shows nothing to be judged by\n"), std::string::npos);
 }
 
 TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
@@ -89,7 +89,8 @@ TEST(StudyFiles, NoTwoSettingsOfTheFigureLookAlike) {
   using namespace report;
   std::vector<chain::SettingOutcome> outcomes{outcome("base", 1e9, 1)};
   for (int i = 0; i < 15; ++i) outcomes.push_back(outcome("cheap " + std::to_string(i), 5e8, 1.1));
-  const Panel panel = figure_of(chain::study_of("chain", "in words", chain::Packings::chosen, {}, outcomes, 0)).panels.front();
+  const Panel panel =
+      figure_of(chain::study_of("chain", "in words", chain::Packings::chosen, {}, outcomes, 0)).panels.front();
   std::set<std::tuple<Marker, Colour, bool>> looks;
   for (const Series& s : panel.series) {
     if (s.marker != Marker::none) looks.insert({s.marker, s.colour, s.open_marker && s.marker != Marker::plus});

@@ -1,4 +1,4 @@
-#include "chain/studies/key_changes.hpp"
+#include "chain/studies/spec_settings.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "chain/studies/packing_quantities.hpp"
+#include "chain/studies/law_quantities.hpp"
 
 #include <gtest/gtest.h>
 

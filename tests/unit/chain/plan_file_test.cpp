@@ -1,4 +1,4 @@
-#include "chain/planning/plan_file.hpp"
+#include "chain/planning/target_run.hpp"
 
 #include <gtest/gtest.h>
 

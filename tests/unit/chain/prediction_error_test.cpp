@@ -12,7 +12,7 @@ namespace grainlaw::chain {
 namespace {
 
 /// The published law with errors of `error` times the value of each parameter.
-CalibratedLaw calibrated(double error) {
+CalibratedLaw law_with_errors(double error) {
   CalibratedLaw c = fit::nothing_known().law;
   c.parameters = published_parameters();
   c.parameters.anisotropy.a2 = 1.18;
@@ -53,8 +53,8 @@ std::vector<TestRecord> rehearsals(const CalibratedLaw& c, double bias, double s
 }
 
 TEST(PredictionError, IsTheBandsHalfWidth) {
-  const PredictionError one = prediction_error(calibrated(0.002), shear(), {}),
-                               two = prediction_error(calibrated(0.004), shear(), {});
+  const PredictionError one = prediction_error(law_with_errors(0.002), shear(), {}),
+                               two = prediction_error(law_with_errors(0.004), shear(), {});
   EXPECT_EQ(one.rung, Rung::evolution);
   ASSERT_EQ(one.quantities.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -63,18 +63,18 @@ TEST(PredictionError, IsTheBandsHalfWidth) {
     EXPECT_NEAR(two.quantities[i].half_width, 2 * one.quantities[i].half_width, 1e-9);
     EXPECT_TRUE(std::isnan(one.quantities[i].discrepancy));  // no residuals
   }
-  EXPECT_TRUE(std::isnan(prediction_error(calibrated(0), shear(), {}).quantities[0].half_width));
+  EXPECT_TRUE(std::isnan(prediction_error(law_with_errors(0), shear(), {}).quantities[0].half_width));
 }
 
 TEST(PredictionError, APathWithoutShearHasPressureAlone) {
   const Path iso{0.72, Branch::unloading, {{Mode::ISO, direction_of(Mode::ISO), ExtentKind::target_nu, 0.8}}};
-  const PredictionError e = prediction_error(calibrated(0.002), iso, {});
+  const PredictionError e = prediction_error(law_with_errors(0.002), iso, {});
   ASSERT_EQ(e.quantities.size(), 1u);
   EXPECT_EQ(e.quantities[0].quantity, "P_star");
 }
 
 TEST(PredictionError, NothingIsKnownByALawThatCannotPredict) {
-  CalibratedLaw c = calibrated(0.002);
+  CalibratedLaw c = law_with_errors(0.002);
   c.estimates[parameter_index("anisotropy.a2")].status = Status::not_identified;
   EXPECT_EQ(prediction_error(c, shear(), {}).rung, Rung::reduced);
   c.estimates[parameter_index("fabric_rate.Q_c")].status = Status::not_identified;
@@ -84,7 +84,7 @@ TEST(PredictionError, NothingIsKnownByALawThatCannotPredict) {
 }
 
 TEST(PredictionError, DiscrepancyIsWhatChanceDoesNotExplain) {
-  const CalibratedLaw c = calibrated(1e-7);  // a band of nearly no width
+  const CalibratedLaw c = law_with_errors(1e-7);  // a band of nearly no width
   const PredictionError exact = prediction_error(c, shear(), rehearsals(c, 0, 0));
   EXPECT_EQ(exact.quantities[2].quantity, "F_par");
   EXPECT_LT(exact.quantities[0].discrepancy, 1e-5);
@@ -102,7 +102,7 @@ TEST(PredictionError, DiscrepancyIsWhatChanceDoesNotExplain) {
 }
 
 TEST(PredictionError, AWideBandExplainsAsMuchAsChance) {
-  const CalibratedLaw c = calibrated(0.002);
+  const CalibratedLaw c = law_with_errors(0.002);
   const double width = prediction_error(c, shear(), {}).quantities[0].half_width;
   const double within = 0.2 * width;
   EXPECT_EQ(prediction_error(c, shear(), rehearsals(c, within, 0)).quantities[0].discrepancy, 0);
@@ -110,7 +110,7 @@ TEST(PredictionError, AWideBandExplainsAsMuchAsChance) {
 }
 
 TEST(PredictionError, OneRehearsalSaysNothing) {
-  const CalibratedLaw c = calibrated(0.002);
+  const CalibratedLaw c = law_with_errors(0.002);
   auto one = rehearsals(c, 0.5, 0);
   one.resize(1);
   EXPECT_TRUE(std::isnan(prediction_error(c, shear(), one).quantities[0].discrepancy));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "fit/data/shear_rows.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 

@@ -11,7 +11,7 @@
 #include "model/vocabulary/test_record.hpp"
 #include "predict/prediction_files.hpp"
 
-namespace grainlaw::app::report {
+namespace grainlaw::chain {
 
 /// A line "what: value" of the provenance table, and the files that say so.
 struct Fact {
@@ -51,4 +51,4 @@ std::vector<Misfit> coupled_misfits(const ReportInput& input);
 /// gains a file.
 void add_facts(const Json& document, const std::string& prefix, const std::string& file, std::vector<Fact>& facts);
 
-}  // namespace grainlaw::app::report
+}  // namespace grainlaw::chain

@@ -1,27 +1,14 @@
-// grainlaw study integrator | dem | fit | chain: measurements of the program itself.
+// grainlaw study dem | fit | chain: what settings of the program cost, and how far they are from a reference.
 
 #include "app/commands/commands.hpp"
-#include "app/report/figure_study.hpp"
-#include "app/report/svg_figure.hpp"
-#include "app/terminal/study_text.hpp"
+#include "app/commands/finish_study.hpp"
 #include "chain/studies/calibrated_setting.hpp"
 #include "chain/studies/studies.hpp"
-#include "chain/studies/study_json.hpp"
-#include "model/files/output.hpp"
-#include "model/parameters_file.hpp"
-#include "predict/studies/integrator_study.hpp"
 
 namespace grainlaw::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct IntegratorOptions {
-  fs::path output;      ///< folder for study.json and work_precision.svg
-  fs::path parameters;  ///< parameters.json; empty: the published values
-  int repeats = 50;     ///< of each path; the least time counts
-  int paths = 100000;   ///< of the batch
-};
 
 struct SettingsOptions {
   fs::path data;                       ///< SPEC.json, or of a study of fits the folder of a data set
@@ -31,70 +18,26 @@ struct SettingsOptions {
   std::vector<std::string> vary;       ///< KEY=VALUE, one setting each
 };
 
-/// How every study ends: study.json and its figure in the folder, the result on standard output.
-template <class Study>
-ExitCode finish(const Study& study, const fs::path& output, const char* figure, const Session& session) {
-  OrderedJson document = study_to_json(study);
-  document["provenance"] = provenance(session);
-  write_json(output / "study.json", document);
-  report::write_svg(output / figure, report::figure_of(study));
-  print_result(session.json ? json_text(document) : study_text(study) + (output / "study.json").string() + "\n");
-  return ExitCode::ok;
-}
-
-predict::IntegratorStudy study_of(const IntegratorOptions& options, int threads) {
-  predict::IntegratorStudy study = predict::published_law_study();
-  if (!options.parameters.empty()) {
-    const CalibratedLaw law = read_parameters(options.parameters).law;
-    require_parameters(law, Rung::evolution, options.parameters.string());
-    study = {law.parameters, law.coupling, options.parameters.string()};
-  }
-  study.repeats = options.repeats;
-  study.paths = options.paths;
-  study.threads = threads;
-  return study;
-}
-
-ExitCode study_integrator(const IntegratorOptions& options, Session& session) {
-  predict::IntegratorStudy study = study_of(options, session.threads);
-  make_output_folder(options.output);
-  measure(study, session);
-  return finish(study, options.output, "work_precision.svg", session);
-}
-
 ExitCode study_dem(const SettingsOptions& options, Session& session) {
   const auto settings = chain::settings_of(options.data, options.reference, options.vary);
-  return finish(chain::study_engine(settings, options.output, session), options.output, "settings.svg", session);
+  return finish_study(chain::study_engine(settings, options.output, session), options.output, "settings.svg", session);
 }
 
 ExitCode study_chain(const SettingsOptions& options, Session& session) {
   const auto settings = chain::settings_of(options.data, options.reference, options.vary);
   const Path path = chain::study_path(options.path);
   const std::size_t judged = options.reference.empty() ? 0 : 1;
-  return finish(chain::study_chain(settings, judged, path, options.output, session), options.output, "settings.svg",
+  return finish_study(chain::study_chain(settings, judged, path, options.output, session), options.output, "settings.svg",
                 session);
 }
 
 ExitCode study_fit(const SettingsOptions& options, Session& session) {
   const auto path = options.path.empty() ? std::nullopt : std::optional(chain::study_path(options.path));
-  return finish(chain::study_fit(options.data, path, options.vary, options.output, session), options.output,
+  return finish_study(chain::study_fit(options.data, path, options.vary, options.output, session), options.output,
                 "settings.svg", session);
 }
 
 }  // namespace
-
-Task declare_study_integrator(CLI::App& command) {
-  const auto options = std::make_shared<IntegratorOptions>();
-  command.add_option("-o,--output", options->output, "folder for study.json and work_precision.svg")->required();
-  command.add_option("--parameters", options->parameters, "parameters.json; default: the published values");
-  command.add_option("--repeats", options->repeats, "repeats of each path, of which the least time counts")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command.add_option("--paths", options->paths, "paths of the batch over all threads")
-      ->check(CLI::Range(1, 10000000))
-      ->capture_default_str();
-  return [options](Session& session) { return study_integrator(*options, session); };
-}
 
 Task declare_study_dem(CLI::App& command) {
   const auto options = std::make_shared<SettingsOptions>();

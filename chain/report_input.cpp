@@ -1,4 +1,4 @@
-#include "app/report/report_input.hpp"
+#include "chain/report_input.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
-namespace grainlaw::app::report {
+namespace grainlaw::chain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,4 +162,4 @@ void add_facts(const Json& document, const std::string& prefix, const std::strin
   }
 }
 
-}  // namespace grainlaw::app::report
+}  // namespace grainlaw::chain
