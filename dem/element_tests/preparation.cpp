@@ -187,8 +187,8 @@ void check_sink(const PreparationSink& sink) {
 
 void check(const PreparationOptions& o) {
   const auto refuse = [](const std::string& why) { throw InvalidInput(why); };
-  if (!(o.nu_start < o.nu_max)) refuse(fmt::format("nu_max: {} must lie above nu_start = {}", o.nu_max, o.nu_start));
-  if (!(o.nu_gas < o.nu_start && o.nu_max <= kMaxVolumeFraction)) {
+  if (o.nu_start >= o.nu_max) refuse(fmt::format("nu_max: {} must lie above nu_start = {}", o.nu_max, o.nu_start));
+  if (!(o.nu_gas < o.nu_start && o.nu_start < o.nu_max && o.nu_max <= kMaxVolumeFraction)) {
     refuse(fmt::format("nu_gas, nu_start, nu_max: {}, {}, {} must increase and end at {} or below", o.nu_gas,
                        o.nu_start, o.nu_max, kMaxVolumeFraction));
   }
