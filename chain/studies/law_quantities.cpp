@@ -15,33 +15,33 @@ namespace {
 constexpr int kStudyPoints = 100;
 constexpr double kFewestShowing = 2;
 
-using Parameters = LawParameters<double>;
+using Values = LawParameters<double>;
 
 /// A number that the law makes of its parameters, and the groups of parameters that it reads.
 struct LawQuantity {
   std::string name;
   std::vector<const char*> groups;
-  std::function<double(const Parameters&)> of;
+  std::function<double(const Values&)> of;
 };
 
 std::vector<LawQuantity> quantities_at(const std::vector<double>& densities) {
   std::vector<LawQuantity> all;
   for (const double nu : densities) {
     const std::string at = "@" + dem::density_text(nu);
-    all.push_back({"P_star" + at, {"coordination", "rattlers", "pressure"}, [nu](const Parameters& law) {
+    all.push_back({"P_star" + at, {"coordination", "rattlers", "pressure"}, [nu](const Values& law) {
                      return law.isotropic.P_star(nu);
                    }});
     all.push_back(
-        {"C_star" + at, {"coordination"}, [nu](const Parameters& law) { return law.isotropic.coordination.C_star(nu); }});
-    const auto add_shear = [&](const char* name, const char* group, ExponentialLaw<double> Parameters::*Q) {
-      all.push_back({name + at, {group}, [nu, Q](const Parameters& law) { return (law.*Q).value(nu, law.shear_nu_c); }});
+        {"C_star" + at, {"coordination"}, [nu](const Values& law) { return law.isotropic.coordination.C_star(nu); }});
+    const auto add_shear = [&](const char* name, const char* group, ExponentialLaw<double> Values::*Q) {
+      all.push_back({name + at, {group}, [nu, Q](const Values& law) { return (law.*Q).value(nu, law.shear_nu_c); }});
     };
-    add_shear("s_max", "stress_ratio_max", &Parameters::stress_ratio_max);
-    add_shear("beta_s", "stress_rate", &Parameters::stress_rate);
-    add_shear("F_max", "fabric_max", &Parameters::fabric_max);
-    add_shear("beta_F", "fabric_rate", &Parameters::fabric_rate);
+    add_shear("s_max", "stress_ratio_max", &Values::stress_ratio_max);
+    add_shear("beta_s", "stress_rate", &Values::stress_rate);
+    add_shear("F_max", "fabric_max", &Values::fabric_max);
+    add_shear("beta_F", "fabric_rate", &Values::fabric_rate);
   }
-  all.push_back({"nu_c", {"pressure"}, [](const Parameters& law) { return law.isotropic.pressure.nu_c; }});
+  all.push_back({"nu_c", {"pressure"}, [](const Values& law) { return law.isotropic.pressure.nu_c; }});
   return all;
 }
 

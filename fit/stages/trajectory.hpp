@@ -57,13 +57,21 @@ LawState<T> combination(const LawState<T>& y, double h, const std::array<LawStat
     const double c = h * a[i];  // plain: a dual number times a dual number is three times the work
     for_each_part(
         [c]<class Part>(const StatePart& part, Part& of_sum, const Part& of_k) {
-          if (!part.has_rate) return;
-          if constexpr (std::is_same_v<Part, T>)
-            of_sum += of_k * c;
-          else
-            for (Eigen::Index j = 0; j < of_sum.size(); ++j) of_sum(j) += of_k(j) * c;
+          if constexpr (std::is_same_v<Part, T>) {
+            if (part.has_rate) of_sum += of_k * c;
+          }
         },
         sum, k[i]);
+    // the same number of all deviators, then the next: one deviator after the other takes a third longer
+    for (Eigen::Index j = 0; j < Deviator<T>::SizeAtCompileTime; ++j) {
+      for_each_part(
+          [c, j]<class Part>(const StatePart& part, Part& of_sum, const Part& of_k) {
+            if constexpr (!std::is_same_v<Part, T>) {
+              if (part.has_rate) of_sum(j) += of_k(j) * c;
+            }
+          },
+          sum, k[i]);
+    }
   }
   return sum;
 }
