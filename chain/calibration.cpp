@@ -10,8 +10,8 @@
 #include "fit/describe.hpp"
 #include "fit/leave_one_out.hpp"
 #include "fit/published/verdicts.hpp"
-#include "model/files/adopted_dataset.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/output.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 

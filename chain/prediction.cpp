@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "dem/runs/dataset_runs.hpp"
-#include "dem/runs/new_packings.hpp"
-#include "model/files/adopted_dataset.hpp"
+#include "model/files/dataset.hpp"
 #include "model/files/digest.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 #include "predict/bands.hpp"

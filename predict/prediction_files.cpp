@@ -4,11 +4,10 @@
 
 #include <cmath>
 
-#include "model/files/column_csv.hpp"
-#include "model/files/durable_file.hpp"
+#include "model/files/column.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
 #include "model/vocabulary/error.hpp"
 

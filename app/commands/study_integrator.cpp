@@ -2,7 +2,7 @@
 
 #include "app/commands/commands.hpp"
 #include "app/commands/finish_study.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/parameters_file.hpp"
 #include "predict/studies/integrator_study.hpp"
 

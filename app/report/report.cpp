@@ -10,7 +10,7 @@
 #include "app/report/page.hpp"
 #include "app/report/series.hpp"
 #include "app/report/tables.hpp"
-#include "model/files/durable_file.hpp"
+#include "model/files/output.hpp"
 
 namespace grainlaw::app {
 namespace report {
@@ -150,11 +150,11 @@ Page make_page(const chain::ReportInput& input) {
 }  // namespace report
 
 void write_report(const std::filesystem::path& dir, const std::filesystem::path& html) {
-  write_durably(html, report::page_html(report::make_page(report::read_report_input(dir))));
+  write_durably(html, report::page_html(report::make_page(chain::read_report_input(dir))));
 }
 
 std::string summary_table(const std::filesystem::path& dir) {
-  return report::parameter_summary(report::read_fitted_parameters(dir));
+  return report::parameter_summary(chain::read_fitted_parameters(dir));
 }
 
 }  // namespace grainlaw::app

@@ -7,7 +7,7 @@
 #include "app/report/axis.hpp"
 #include "app/report/page.hpp"
 #include "app/report/svg_series.hpp"
-#include "model/files/durable_file.hpp"
+#include "model/files/output.hpp"
 
 namespace grainlaw::app::report {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "dem/runs/preparation_json.hpp"
+#include "dem/runs/feasibility.hpp"
 #include "dem/runs/dataset_runs.hpp"
 #include "fit/data/options.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "chain/planning/plan_pilot.hpp"
 #include "chain/planning/planned_spec.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/files/path_file.hpp"
 #include "model/vocabulary/error.hpp"
 

@@ -10,7 +10,7 @@
 #include "chain/studies/law_quantities.hpp"
 #include "fit/calibrate.hpp"
 #include "model/files/path_file.hpp"
-#include "model/files/provenance.hpp"
+#include "model/files/execution.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {

@@ -7,7 +7,7 @@
 
 #include "dem/runs/dataset_runs.hpp"
 #include "model/files/one_line.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {

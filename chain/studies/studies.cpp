@@ -5,8 +5,8 @@
 #include "chain/studies/calibrated_setting.hpp"
 #include "chain/studies/fit_choices.hpp"
 #include "chain/studies/law_quantities.hpp"
-#include "model/files/adopted_dataset.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/dataset.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {

@@ -20,7 +20,7 @@ struct DriveOptions {
   double strain_rate = 138;                      ///< peak of max(|eps_vol rate|, eps_dev rate) along a segment [1/s]
   Profile profile = Profile::cosine;
   Transport transport = Transport::homogeneous;
-  double quasi_static_step = 0;  ///< > 0: no dynamics, but minimised steps of at most this strain (dem/element_tests/quasi_static.hpp) [-]
+  double quasi_static_step = 0;  ///< > 0: no dynamics, but minimised steps of at most this strain (dem/element_tests/stepper.hpp) [-]
 };
 constexpr auto fields_of(std::type_identity<DriveOptions>) {
   using D = DriveOptions;

@@ -8,8 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "dem/element_tests/quasi_static.hpp"
-#include "dem/element_tests/time_stepper.hpp"
+#include "dem/element_tests/stepper.hpp"
 #include "dem/engine/averages.hpp"
 #include "dem/engine/run_watch.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 // An element test: a packing driven along a strain path, observed at equal steps of the path parameter e. The run is one
-// for both ways of following the path: in time (dem/element_tests/time_stepper.hpp) and, where drive.quasi_static_step > 0,
-// by minimisation (dem/element_tests/quasi_static.hpp).
+// for both ways of following the path: in time (dem/element_tests/stepper.hpp) and, where drive.quasi_static_step > 0,
+// by minimisation (dem/element_tests/stepper.hpp).
 
 #include <functional>
 #include <string>

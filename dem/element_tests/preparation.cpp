@@ -14,37 +14,9 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kMaxVolumeFraction = 0.9;
-
 double nu_end(const PreparationOptions& o) {
   if (o.nu_end) return *o.nu_end;
   return o.keep_unloading.empty() ? o.nu_start : *std::min_element(o.keep_unloading.begin(), o.keep_unloading.end());
-}
-
-void check_options(const PreparationOptions& o, const PreparationSink& sink) {
-  const auto refuse = [](const std::string& why) { throw InvalidInput(why); };
-  if (!sink.keep || !sink.series) throw Error("preparation: its sink needs keep and series");
-  if (!(o.nu_gas < o.nu_start && o.nu_start < o.nu_max && o.nu_max <= kMaxVolumeFraction)) {
-    refuse(fmt::format("nu_gas, nu_start, nu_max: {}, {}, {} must increase and end at {} or below", o.nu_gas, o.nu_start,
-                       o.nu_max, kMaxVolumeFraction));
-  }
-  for (const double nu : o.keep_loading) {
-    if (!(nu >= o.nu_start && nu <= o.nu_max)) {
-      refuse(fmt::format("densities: {} of the loading branch is outside [{}, {}]", nu, o.nu_start, o.nu_max));
-    }
-  }
-  const double lowest = o.nu_end.value_or(o.nu_start);
-  if (!(lowest >= o.nu_start && lowest < o.nu_max)) {
-    refuse(fmt::format("nu_end: {} is outside [nu_start, nu_max) = [{}, {})", lowest, o.nu_start, o.nu_max));
-  }
-  for (const double nu : o.keep_unloading) {
-    if (!(nu >= lowest && nu <= o.nu_max)) {
-      refuse(fmt::format("densities: {} of the unloading branch is outside [{}, {}]", nu, lowest, o.nu_max));
-    }
-  }
-  if (!(o.gas_compression_factor > 0) || !std::isfinite(o.gas_compression_factor)) {
-    refuse("gas_compression_factor: must be positive and finite");
-  }
 }
 
 /// Reports under the name of a stage, with the particle-steps of the stages before it added.
@@ -86,7 +58,7 @@ ElementTestOptions branch_options(const PreparationOptions& options) {
 ElementTestOptions gas_options(const PreparationOptions& options) {
   ElementTestOptions gas = branch_options(options);
   gas.drive.strain_rate *= options.gas_compression_factor;
-  gas.drive.quasi_static_step = 0;  // a gas has no equilibrium
+  gas.drive.quasi_static_step = 0;                                     // a gas has no equilibrium
   gas.warn_inertial_number = std::numeric_limits<double>::infinity();  // a gas is not meant to be quasi-static
   return gas;
 }
@@ -126,9 +98,13 @@ class Preparation {
     return start;
   }
 
-  State load(Origin from) { return run_branch(Branch::loading, std::move(from), options_.nu_max, options_.keep_loading); }
+  State load(Origin from) {
+    return run_branch(Branch::loading, std::move(from), options_.nu_max, options_.keep_loading);
+  }
 
-  void unload(Origin from) { run_branch(Branch::unloading, std::move(from), nu_end(options_), options_.keep_unloading); }
+  void unload(Origin from) {
+    run_branch(Branch::unloading, std::move(from), nu_end(options_), options_.keep_unloading);
+  }
 
   /// One isotropic run to `to_nu`; warnings go to the sink.
   ElementTest drive_to(Origin from, double to_nu, const ElementTestOptions& options, const std::string& stage,
@@ -145,11 +121,12 @@ class Preparation {
         checkpointing_.save(named);
       };
     }
-    const RunControl control =
-        with_stage(control_, stage, static_cast<double>(steps_before_) * static_cast<double>(options_.packing.particles));
+    const RunControl control = with_stage(
+        control_, stage, static_cast<double>(steps_before_) * static_cast<double>(options_.packing.particles));
     const auto segment = isotropic_segment(start_of(from), to_nu);
-    ElementTest test = checkpoint ? continue_element_test(std::move(*checkpoint), segment, options, control, on_step, staged)
-                                  : run_element_test(std::get<State>(from), segment, options, control, on_step, staged);
+    ElementTest test = checkpoint
+                           ? continue_element_test(std::move(*checkpoint), segment, options, control, on_step, staged)
+                           : run_element_test(std::get<State>(from), segment, options, control, on_step, staged);
     steps_before_ += test.steps;
     seconds_before_ += test.seconds;
     if (sink_.warn) {
@@ -202,17 +179,51 @@ class Preparation {
   double seconds_before_ = 0;       // likewise
 };
 
+void check_sink(const PreparationSink& sink) {
+  if (!sink.keep || !sink.series) throw Error("preparation: its sink needs keep and series");
+}
+
 }  // namespace
+
+void check(const PreparationOptions& o) {
+  const auto refuse = [](const std::string& why) { throw InvalidInput(why); };
+  if (o.nu_start >= o.nu_max) refuse(fmt::format("nu_max: {} must lie above nu_start = {}", o.nu_max, o.nu_start));
+  if (!(o.nu_gas < o.nu_start && o.nu_start < o.nu_max && o.nu_max <= kMaxVolumeFraction)) {
+    refuse(fmt::format("nu_gas, nu_start, nu_max: {}, {}, {} must increase and end at {} or below", o.nu_gas,
+                       o.nu_start, o.nu_max, kMaxVolumeFraction));
+  }
+  const double lowest = o.nu_end.value_or(o.nu_start);
+  if (!(lowest >= o.nu_start && lowest < o.nu_max)) {
+    refuse(fmt::format("nu_end: {} must lie within [nu_start, nu_max) = [{}, {})", lowest, o.nu_start, o.nu_max));
+  }
+  for (const double nu : o.keep_loading) {
+    if (!(nu >= o.nu_start && nu <= o.nu_max)) {
+      refuse(fmt::format("densities: {} is not on the loading branch [nu_start, nu_max] = [{}, {}]", nu, o.nu_start,
+                         o.nu_max));
+    }
+  }
+  for (const double nu : o.keep_unloading) {
+    if (!(nu >= lowest && nu <= o.nu_max)) {
+      refuse(fmt::format("densities: {} is not on the unloading branch [nu_end, nu_max] = [{}, {}]", nu, lowest,
+                         o.nu_max));
+    }
+  }
+  if (!(o.gas_compression_factor > 0) || !std::isfinite(o.gas_compression_factor)) {
+    refuse("gas_compression_factor: must be positive and finite");
+  }
+}
 
 void prepare(const PreparationOptions& options, const PreparationSink& sink, const RunControl& control,
              const Checkpointing& checkpointing) {
-  check_options(options, sink);
+  check_sink(sink);
+  check(options);
   Preparation(options, sink, control, checkpointing).run({});
 }
 
 void continue_preparation(Checkpoint from, const PreparationOptions& options, const PreparationSink& sink,
                           const RunControl& control, const Checkpointing& checkpointing) {
-  check_options(options, sink);
+  check_sink(sink);
+  check(options);
   Preparation(options, sink, control, checkpointing).run(std::move(from));
 }
 

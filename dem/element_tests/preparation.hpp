@@ -8,27 +8,10 @@
 #include <vector>
 
 #include "dem/element_tests/element_run.hpp"
+#include "dem/element_tests/random_gas.hpp"
 #include "dem/statics/relax.hpp"
 
 namespace grainlaw::dem {
-
-struct PackingOptions {
-  std::int64_t particles = 2000;  ///< N
-  double size_width = 3;          ///< w = r_max/r_min of the uniform distribution, >= 1 [-]
-  double mean_radius = 1e-3;      ///< mean of the distribution [m]
-  std::uint64_t seed = 1;         ///< key of the generator
-  Material material;
-};
-constexpr auto fields_of(std::type_identity<PackingOptions>) {
-  using P = PackingOptions;
-  return std::tuple{
-      Field{&P::particles, "particles", "", "N", "number of spheres of a packing"},
-      Field{&P::size_width, "size_width", "", "w", "w = r_max/r_min of the uniform size distribution"},
-      Field{&P::mean_radius, "mean_radius", "m", "<r>", "mean of the size distribution"},
-      Field{&P::seed, "seed", "", "", "seed of the packing", Rule::fixed},  // a key of TEST, a list in SPEC
-      Field{&P::material, ""}};
-}
-static_assert(tells_every_member<PackingOptions>());
 
 struct PreparationOptions {
   PackingOptions packing;
@@ -64,6 +47,10 @@ constexpr auto fields_of(std::type_identity<PreparationOptions>) {
 }
 static_assert(tells_every_member<PreparationOptions>());
 
+/// Throws InvalidInput "KEY: ..." unless the densities increase, those kept lie on their branches and the gas compression has a
+/// rate.
+void check(const PreparationOptions& options);
+
 /// A state kept at a density, relaxed there.
 struct KeptState {
   Branch branch = Branch::unloading;
@@ -80,10 +67,6 @@ struct PreparationSink {
   /// Whether a continued preparation delivered this state before it was interrupted; it is not made again. May be empty.
   std::function<bool(Branch, double nu)> has;
 };
-
-/// The random gas: radii uniform on 2<r>/(w+1) [1, w], random positions without overlap beyond what the relaxation
-/// removes, random velocities, zero momentum, volume fraction nu_gas, cubic cell. Throws InvalidInput naming the key.
-State random_gas(const PackingOptions& options, double nu_gas, const EngineOptions& engine, const RunControl& control);
 
 /// Runs the whole preparation. The branches are not interrupted by keeping: when one crosses a kept density, a copy is
 /// set to exactly that density and relaxed. Checkpoints are taken along its driven stages; a relaxation or the random gas

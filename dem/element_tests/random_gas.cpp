@@ -1,9 +1,10 @@
+#include "dem/element_tests/random_gas.hpp"
+
+#include <Random123/philox.h>
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "dem/element_tests/preparation.hpp"
-#include "dem/engine/random.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -39,6 +40,20 @@ void check_options(const PackingOptions& o, double nu_gas) {
 }
 
 }  // namespace
+
+std::array<std::uint64_t, 4> random_words(std::uint64_t seed, Stream stream, std::uint64_t block) {
+  const r123::Philox4x64::ctr_type counter = {{block, 0, 0, 0}};
+  const r123::Philox4x64::key_type key = {{seed, static_cast<std::uint64_t>(stream)}};
+  const auto words = r123::Philox4x64()(counter, key);
+  return {words[0], words[1], words[2], words[3]};
+}
+
+std::array<double, 4> uniform(std::uint64_t seed, Stream stream, std::uint64_t block) {
+  std::array<double, 4> numbers{};
+  const auto words = random_words(seed, stream, block);
+  for (std::size_t i = 0; i < 4; ++i) numbers[i] = static_cast<double>(words[i] >> 11) * 0x1p-53;
+  return numbers;
+}
 
 State random_gas(const PackingOptions& options, double nu_gas, const EngineOptions& engine, const RunControl& control) {
   check_options(options, nu_gas);

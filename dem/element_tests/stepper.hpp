@@ -1,12 +1,14 @@
 #pragma once
-// What an element test asks of the way in which its packing follows the path. There are two: in time, with the packing's
-// dynamics (dem/element_tests/time_stepper.hpp), and quasi-static, by minimisation (dem/element_tests/quasi_static.hpp).
+// What an element test asks of the way in which its packing follows the path. There are two: in time, with the
+// packing's dynamics (time_stepper.cpp), and quasi-static, by minimisation (quasi_static.cpp).
 
 #include <cstdint>
+#include <memory>
+#include <stop_token>
 #include <string>
 #include <vector>
 
-#include "dem/engine/simulation.hpp"
+#include "dem/element_tests/element_run.hpp"
 #include "model/vocabulary/error.hpp"
 #include "model/vocabulary/observation.hpp"
 
@@ -52,5 +54,35 @@ class Stepper {
   /// What was noticed, for the log of a run of so many rows.
   virtual std::vector<std::string> warnings(std::size_t rows) const = 0;
 };
+
+// --- In time: the cell follows dem/element_tests/drive.hpp, the spheres their equations of motion
+// (dem/engine/simulation.hpp). Steps of a segment are equal and rounded up in number, so that segments end exactly and
+// dt is at most the engine's. A corner is a jump of the velocity gradient: forces are computed anew there. The run is
+// stopped where its energies are out of balance, and warned of where it is no longer quasi-static.
+
+/// `segments` and `options` must outlive the stepper. Steps are time steps. start() and resume() throw InvalidInput for
+/// a segment that the engine cannot follow or that would take more than 1e12 steps; judge() throws Error 'energy
+/// balance' naming row and residual.
+std::unique_ptr<Stepper> make_time_stepper(const std::vector<StraightSegment>& segments,
+                                           const ElementTestOptions& options);
+
+// --- Without dynamics: the cell is deformed in small affine steps, each followed by a minimisation of the elastic
+// energy at fixed cell (athermal quasi-static shear, e.g. Maloney and Lemaître, Phys. Rev. E 74, 016118 (2006)). It is
+// the limit of vanishing rate of the way in time, but for which minimum of several a packing falls into.
+//   H_k = exp(e_k D) H_0, e_k = k length/steps, spheres move with the cell, then dem/statics/relax.hpp
+//   W_box grows by the change of elastic energy in the affine step, D_contact by what the minimisation takes
+// Spheres are at rest in every row, the inertial number is 0, and time is that of a constant strain_rate, for the name
+// only.
+
+/// Affine steps of a segment: of at most quasi_static_step, so many that every row ends one. Throws InvalidInput beyond
+/// 1e9.
+std::uint64_t quasi_static_steps(const StraightSegment& segment, const DriveOptions& drive, int rows);
+
+/// For options.drive.quasi_static_step > 0; `segments` and `options` must outlive the stepper. Its steps of a segment
+/// are affine steps, its steps() force passes. Steps whose minimisation did not reach options.relax.tolerance are
+/// warned of. Throws InvalidInput for wall-driven transport; start() and step() throw Interrupted when `stop` is
+/// requested.
+std::unique_ptr<Stepper> make_quasi_static_stepper(const std::vector<StraightSegment>& segments,
+                                                   const ElementTestOptions& options, const std::stop_token& stop);
 
 }  // namespace grainlaw::dem

@@ -1,4 +1,4 @@
-#include "dem/element_tests/time_stepper.hpp"
+#include "dem/element_tests/stepper.hpp"
 
 #include <fmt/format.h>
 

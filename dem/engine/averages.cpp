@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dem/engine/energy_account.hpp"
+#include "dem/engine/state.hpp"
 
 namespace grainlaw::dem {
 namespace {

@@ -3,7 +3,7 @@
 // "reference" that a user can choose, and what simulations fall back to where lanes do not fit. The state's arrays are
 // current after each half of a step.
 
-#include "dem/engine/contact_view.hpp"
+#include "dem/engine/contacts.hpp"
 #include "dem/engine/neighbour_list.hpp"
 
 namespace grainlaw::dem {

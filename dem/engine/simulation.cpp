@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "dem/engine/energy_account.hpp"
+#include "dem/engine/state.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "dem/files/sealed_file.hpp"
-#include "dem/files/state_record.hpp"
+#include "dem/files/state_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {

@@ -1,14 +1,13 @@
 #include "dem/files/sealed_file.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <fstream>
 
-#include "model/files/durable_file.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -16,15 +15,6 @@ namespace {
 
 constexpr std::size_t kPrefix = 16, kChecksum = 32;
 constexpr std::size_t kMaxHeader = 65536;
-
-std::string sha256(std::string_view bytes) {
-  std::array<unsigned char, kChecksum> sum{};
-  unsigned int length = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), sum.data(), &length, EVP_sha256(), nullptr) != 1 || length != kChecksum) {
-    throw Error("SHA-256 is not available from the OpenSSL library");
-  }
-  return {sum.begin(), sum.end()};
-}
 
 void put_unsigned(std::string& out, std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; ++i) out.push_back(static_cast<char>((value >> (8 * i)) & 0xff));
@@ -79,15 +69,15 @@ void write_sealed(const std::filesystem::path& file, const SealedFormat& format,
   const std::string text = header.dump();
   if (text.size() > kMaxHeader) throw Error(fmt::format("{}: the header is too long to be written", file.string()));
   if (!numbers.sound()) {
-    throw Error(fmt::format("{}: is not written because a number is not finite or an array has another length",
-                            file.string()));
+    throw Error(
+        fmt::format("{}: is not written because a number is not finite or an array has another length", file.string()));
   }
   std::string out(format.magic);
   put_unsigned(out, format.version, 4);
   put_unsigned(out, text.size(), 4);
   out += text;
   out += numbers.bytes();
-  out += sha256(out);
+  out += sha256_bytes(out);
   write_durably(file, out);
 }
 
@@ -101,7 +91,8 @@ void read_sealed(const std::filesystem::path& file, const SealedFormat& format,
     throw refusal(fmt::format("is not a {}, or cut short", format.name));
   }
   const std::string_view content = std::string_view(bytes).substr(0, bytes.size() - kChecksum);
-  if (sha256(content) != std::string_view(bytes).substr(content.size())) throw refusal("is damaged: its checksum does not fit");
+  if (sha256_bytes(content) != std::string_view(bytes).substr(content.size()))
+    throw refusal("is damaged: its checksum does not fit");
   const std::uint64_t version = get_unsigned(content.substr(format.magic.size(), 4));
   if (version != format.version) {
     throw refusal(fmt::format("has format version {}, this program reads {}", version, format.version));

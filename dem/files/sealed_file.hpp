@@ -1,7 +1,7 @@
 #pragma once
 // The envelope of the engine's binary files; integers and doubles little-endian:
 //   magic, 8 bytes | version u32 | length of the header u32 | header, JSON | numbers, 8 bytes each | SHA-256 of all before
-// Written durably (model/files/durable_file.hpp). Read: checksum first, then everything else.
+// Written durably (model/files/output.hpp). Read: checksum first, then everything else.
 
 #include <cstdint>
 #include <filesystem>

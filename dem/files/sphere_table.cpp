@@ -13,7 +13,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "model/files/durable_file.hpp"
+#include "model/files/output.hpp"
 #include "dem/engine/neighbour_list.hpp"
 #include "model/vocabulary/error.hpp"
 

@@ -1,10 +1,14 @@
 #pragma once
-// The file of a kept state. Layout: dem/files/sealed_file.hpp (envelope), dem/files/state_record.hpp (content).
+// A state on disk: the file of a kept state, and the state as part of a checkpoint (dem/files/sealed_file.hpp).
+//   header: particles, step, seed, digest, has_accelerations, has_list_reference
+//   numbers: material, time, ledger, sums, H and ref_H by rows; radius, mass, s, v; a (if has_accelerations) and
+//   reference fractions (if has_list_reference), each array whole; ids. SI units, in the order of dem/engine/state.hpp.
 
 #include <cstdint>
 #include <filesystem>
 
 #include "dem/engine/state.hpp"
+#include "dem/files/sealed_file.hpp"
 
 namespace grainlaw::dem {
 
@@ -16,5 +20,12 @@ void write_state(const std::filesystem::path& file, const State& state);
 
 /// The state bit for bit as written. Throws InvalidInput naming file and reason: damaged, other version, out of bounds.
 State read_state(const std::filesystem::path& file);
+
+/// The state as part of a file.
+nlohmann::json state_header(const State& state);
+void put_state(const State& state, NumberWriter& numbers);
+
+/// Throws InvalidInput, or an exception of the JSON library, unless header and numbers make a sound state.
+State take_state(const nlohmann::json& header, NumberReader& numbers);
 
 }  // namespace grainlaw::dem

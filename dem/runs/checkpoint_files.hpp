@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "model/files/execution.hpp"
 #include "dem/files/checkpoint.hpp"
+#include "model/files/execution.hpp"
 
 namespace grainlaw::dem {
 

@@ -6,13 +6,10 @@
 #include <map>
 #include <set>
 
+#include "dem/runs/feasibility.hpp"
 #include "model/files/digest.hpp"
-#include "dem/runs/preparation_json.hpp"
+#include "model/files/output.hpp"
 #include "model/files/series_csv.hpp"
-#include "model/files/output_folder.hpp"
-#include "dem/runs/job_list.hpp"
-#include "dem/runs/runs.hpp"
-#include "model/files/durable_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -20,15 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string preparation_key(const PlannedTest& test) { return run_key(preparation_request(test.preparation)); }
-
-TestStart start_of(const PlannedTest& test) { return {test.preparation, test.rows, {}, "", false, test.probes}; }
-
-std::string test_key(const PlannedTest& test) {
-  return test.branch_of_preparation ? preparation_key(test) : run_key(test_request(start_of(test), test.path));
+std::string key_of(const PlannedTest& test) {
+  return test.branch_of_preparation ? preparation_key(test.preparation) : test_key(test);
 }
-
-double particles(const PlannedTest& test) { return static_cast<double>(test.preparation.packing.particles); }
 
 /// Preparations first, then the tests in order; each key once.
 std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,
@@ -37,35 +28,19 @@ std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore&
   std::map<std::string, std::size_t> index;
   const auto add = [&](const std::string& key, Job job) {
     ++counts.runs;
-    if (store.find(key)) {
-      ++counts.found;
-      job.work = 0;
-    }
+    if (job.work == 0) ++counts.found;
     index[key] = jobs.size();
     jobs.push_back(std::move(job));
   };
   for (const PlannedTest& test : tests) {
-    const std::string key = preparation_key(test);
-    if (index.contains(key)) continue;
-    const auto& options = test.preparation;
-    const std::string name = fmt::format("seed {}", options.packing.seed);
-    add(key, {name, particles(test) * expected_steps(options), std::nullopt,
-              [&store, &options, policy = policy_of(execution, name)](int threads, const RunControl& control) {
-                PreparationOptions with_threads = options;
-                with_threads.engine.threads = threads;
-                ensure_preparation(store, with_threads, policy, control);
-              }});
+    const PreparationOptions& o = test.preparation;
+    const std::string key = preparation_key(o);
+    if (!index.contains(key)) add(key, preparation_job(store, o, fmt::format("seed {}", o.packing.seed), execution));
   }
   for (const PlannedTest& test : tests) {
-    const std::string key = test_key(test);
+    const std::string key = key_of(test);
     if (index.contains(key)) continue;
-    add(key, {test.name, particles(test) * expected_steps(test.preparation, resolve(test.path)),
-              index.at(preparation_key(test)),
-              [&store, &test, policy = policy_of(execution, test.name)](int threads, const RunControl& control) {
-                TestStart start = start_of(test);
-                start.preparation.engine.threads = threads;
-                ensure_test(store, start, test.path, policy, control);
-              }});
+    add(key, test_job(store, test, test.name, index.at(preparation_key(test.preparation)), execution));
   }
   return jobs;
 }
@@ -89,16 +64,68 @@ std::vector<PlannedTest> plan(const Spec& spec) {
   for (const std::uint64_t seed : spec.seeds) {
     PreparationOptions preparation = spec.preparation;
     preparation.packing.seed = seed;
+    const auto add = [&](const TestRequest& request, double nu) {
+      PlannedTest& test = tests.emplace_back();
+      test.preparation = preparation;
+      test.path = path_of(request, nu, spec);
+      test.rows = preparation.rows;
+      test.probes = request.probes;
+      test.name = record_name(request, nu, seed);
+      test.role = request.role;
+      test.branch_of_preparation = request.mode == "ISO";
+    };
     for (const TestRequest& request : spec.tests) {
-      if (request.mode == "ISO") {
-        tests.push_back({record_name(request, 0, seed), request.role, path_of(request, 0, spec), preparation,
-                         preparation.rows, true});
-      }
-      for (const double nu : request.densities) {
-        tests.push_back({record_name(request, nu, seed), request.role, path_of(request, nu, spec), preparation,
-                         preparation.rows, false, request.probes});
-      }
+      if (request.mode == "ISO") add(request, 0);
+      for (const double nu : request.densities) add(request, nu);
     }
+  }
+  return tests;
+}
+
+std::vector<std::uint64_t> new_seeds(const Spec& spec, const PathFile& path, const std::vector<std::uint64_t>& wished,
+                                     const std::string& name) {
+  std::vector<std::uint64_t> seeds = wished.empty() ? path.seeds : wished;
+  if (seeds.empty()) {
+    const std::uint64_t largest = *std::max_element(spec.seeds.begin(), spec.seeds.end());
+    for (std::size_t i = 1; i <= spec.seeds.size(); ++i) seeds.push_back(largest + i);
+  }
+  for (std::size_t i = 0; i < seeds.size(); ++i) {
+    if (std::find(spec.seeds.begin(), spec.seeds.end(), seeds[i]) != spec.seeds.end()) {
+      throw InvalidInput(
+          fmt::format("{}: seeds: {} was used for the calibration; a prediction is tested on packings it has not seen, "
+                      "give another",
+                      name, seeds[i]));
+    }
+    if (std::find(seeds.begin(), seeds.begin() + static_cast<std::ptrdiff_t>(i), seeds[i]) !=
+        seeds.begin() + static_cast<std::ptrdiff_t>(i)) {
+      throw InvalidInput(fmt::format("{}: seeds: {} is given twice", name, seeds[i]));
+    }
+  }
+  return seeds;
+}
+
+std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std::vector<std::uint64_t>& seeds,
+                              const std::string& name) {
+  PreparationOptions preparation = spec.preparation;
+  // only what predictions start from: paths that name the spec's `keep` share their packings
+  preparation.keep_loading.clear();
+  preparation.keep_unloading = spec.keep;
+  auto& kept = path.path.branch == Branch::loading ? preparation.keep_loading : preparation.keep_unloading;
+  if (std::find(kept.begin(), kept.end(), path.path.nu) == kept.end()) kept.push_back(path.path.nu);
+  std::sort(kept.begin(), kept.end());
+  complete_preparation(preparation, name);
+  check_path(path.path, preparation, name);
+
+  TestRequest request;
+  request.branch = path.path.branch;
+  request.segments = path.path.segments;
+  request.name = default_name(request);
+  std::vector<PlannedTest> tests;
+  for (const std::uint64_t seed : seeds) {
+    preparation.packing.seed = seed;
+    tests.push_back({{preparation, path.path, path.rows.value_or(preparation.rows)},
+                     record_name(request, path.path.nu, seed),
+                     Role::validation});
   }
   return tests;
 }
@@ -112,7 +139,7 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
   dataset.spec = spec;
   for (const PlannedTest& planned : tests) {
     DatasetTest test;
-    test.run = test_key(planned);
+    test.run = key_of(planned);
     const Json record = store.find(test.run).value();
     test.record = {planned.name, planned.role, planned.path, packing_from_record(record), {}};
     test.cost = cost_from_record(record);

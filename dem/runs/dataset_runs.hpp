@@ -1,30 +1,40 @@
 #pragma once
 // From a spec to its data set: every packing prepared, every test run, every series in one folder.
 
+#include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <string>
 #include <vector>
 
-#include "model/files/dataset.hpp"
+#include "dem/runs/runs.hpp"
 #include "dem/runs/spec_file.hpp"
-#include "dem/runs/run_store.hpp"
+#include "model/files/dataset.hpp"
 #include "model/files/execution.hpp"
+#include "model/files/path_file.hpp"
 
 namespace grainlaw::dem {
 
 /// One test on one packing.
-struct PlannedTest {
+struct PlannedTest : TestSetup {
   std::string name;  ///< of the record
   Role role = Role::calibration;
-  Path path;
-  PreparationOptions preparation;             ///< of its packing
-  int rows = 200;                                  ///< of each segment
-  bool branch_of_preparation = false;              ///< ISO: the series that the preparation itself leaves
-  std::optional<ProbePlan> probes = std::nullopt;  ///< small-strain probes along the test
+  bool branch_of_preparation = false;  ///< ISO: the series that the preparation itself leaves
 };
 
 /// All tests of the spec on all seeds, in the order of the spec within each seed.
 std::vector<PlannedTest> plan(const Spec& spec);
+
+// The DEM side of a prediction, the path on packings that the calibration has never seen:
+
+/// Seeds for the path's runs: `wished`, else PATH's, else as many as the spec has, following its largest. Throws
+/// InvalidInput when one of them belongs to the calibration.
+std::vector<std::uint64_t> new_seeds(const Spec& spec, const PathFile& path, const std::vector<std::uint64_t>& wished,
+                                     const std::string& name);
+
+/// One test of role validation for each seed; packings are prepared as the spec says, keeping the path's density
+/// besides the spec's `keep`. Throws InvalidInput when the density is not on its branch or the path would not end.
+std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std::vector<std::uint64_t>& seeds,
+                              const std::string& name);
 
 /// What run_planned did.
 struct RunCounts {

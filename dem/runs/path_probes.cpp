@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/files/digest.hpp"
-#include "model/files/column_csv.hpp"
-#include "model/vocabulary/probe_row.hpp"
 #include "dem/runs/run_store.hpp"
-#include "model/files/durable_file.hpp"
-#include "dem/statics/probe_rows.hpp"
+#include "dem/statics/elastic_moduli.hpp"
+#include "model/files/column.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -29,9 +28,9 @@ std::string digest_of(const OrderedJson& progress) {
 
 }  // namespace
 
-PathProbes::PathProbes(std::filesystem::path folder, ProbePlan plan, const std::vector<StraightSegment>& segments,
+PathProbes::PathProbes(std::filesystem::path folder, ProbeRequest request, const std::vector<StraightSegment>& segments,
                        int threads, const RunControl& control)
-    : folder_(std::move(folder)), plan_(std::move(plan)), segments_(segments), threads_(threads) {
+    : folder_(std::move(folder)), request_(std::move(request)), segments_(segments), threads_(threads) {
   control_.stop = control.stop;  // the run itself reports
 }
 
@@ -61,7 +60,7 @@ StepObserver PathProbes::observer() {
   return [this](Simulation& sim, int segment, double e) {
     const auto index = static_cast<std::size_t>(segment);
     const double length = length_before(index) + length_rate(segments_[index]) * e;
-    if (length < plan_.every * static_cast<double>(done_) - kRounding) return;
+    if (length < request_.every * static_cast<double>(done_) - kRounding) return;
     probe(sim.state(), segment, e);
     save();
   };
@@ -72,15 +71,15 @@ void PathProbes::probe(const State& state, int segment, double e) {
   const bool sheared = own.squaredNorm() > 0;
   const Deviator<double> N = sheared ? own : -deviator<double>(direction_of(Mode::D2).tensor).normalized();
   ProbeOptions options;
-  options.steps = plan_.steps;
+  options.steps = request_.steps;
   options.threads = threads_;
   const ElasticProbe probe = probe_moduli(state, N, options, control_);
   double sheared_before = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(segment); ++i) sheared_before += shear_length(segments_[i]);
   for (ProbeRow& row : rows_of(probe, stress_unit(state))) {
     row.time = state.time;
-    fill_path(row, segments_.empty() ? StraightSegment{} : segments_[static_cast<std::size_t>(segment)], segment,
-                   e, sheared_before);
+    fill_path(row, segments_.empty() ? StraightSegment{} : segments_[static_cast<std::size_t>(segment)], segment, e,
+              sheared_before);
     if (!sheared) row.s_par = row.F_par = Observation::undefined;
     lines_.push_back(csv_line(row));
   }

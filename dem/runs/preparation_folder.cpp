@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "model/files/fields_json.hpp"
-#include "model/files/digest.hpp"
-#include "model/files/series_csv.hpp"
-#include "dem/runs/spec_file.hpp"
-#include "model/files/output_folder.hpp"
-#include "dem/runs/run_store.hpp"
 #include "dem/files/state_file.hpp"
+#include "dem/runs/run_store.hpp"
+#include "dem/runs/spec_file.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/fields_json.hpp"
+#include "model/files/output.hpp"
+#include "model/files/series_csv.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "model/files/json_document.hpp"
 #include "dem/element_tests/preparation.hpp"
+#include "model/files/json_document.hpp"
 
 namespace grainlaw::dem {
 

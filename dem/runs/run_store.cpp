@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "model/files/digest.hpp"
-#include "model/files/output_folder.hpp"
-#include "model/vocabulary/engine_version.hpp"
+#include "model/files/execution.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {

@@ -2,18 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "dem/files/state_file.hpp"
+#include "dem/runs/feasibility.hpp"
+#include "dem/runs/preparation_folder.hpp"
+#include "dem/runs/spec_file.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/path_json.hpp"
-#include "dem/runs/preparation_json.hpp"
 #include "model/files/series_csv.hpp"
-#include "dem/runs/spec_file.hpp"
-#include "model/files/provenance.hpp"
-#include "dem/runs/checkpoint_files.hpp"
-#include "dem/runs/path_probes.hpp"
-#include "dem/runs/preparation_folder.hpp"
-#include "dem/files/state_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -23,7 +21,8 @@ namespace fs = std::filesystem;
 
 /// A preparation as its tests depend on it: without rows and without the list of states that were kept on the way.
 Json packing_identity(const PreparationOptions& o) {
-  Json identity = preparation_to_json(o, true);
+  Json identity = fields_to_json(o, true);
+  if (!o.nu_end) identity["nu_end"] = o.nu_start;
   if (o.drive.quasi_static_step == 0) {  // else rows are part of how the steps are cut
     identity.erase("rows");
     identity.erase("quasi_static_step");
@@ -31,14 +30,12 @@ Json packing_identity(const PreparationOptions& o) {
   return identity;
 }
 
-State start_state(const RunStore& store, const TestStart& start, const Path& path, const RunControl& control) {
-  if (!start.given) {
-    const fs::path run = store.folder(run_key(preparation_request(start.preparation)));
-    return read_state(run / kept_file(path.branch, path.nu));
-  }
-  State state = *start.given;
-  if (!start.relax) return state;
-  const Relaxation relaxation = relax(state, start.preparation.engine, start.preparation.relax, control);
+State start_state(const RunStore& store, const TestSetup& test, const RunControl& control) {
+  if (!test.given)
+    return read_state(store.folder(preparation_key(test.preparation)) / kept_file(test.path.branch, test.path.nu));
+  State state = *test.given;
+  if (!test.relax) return state;
+  const Relaxation relaxation = relax(state, test.preparation.engine, test.preparation.relax, control);
   if (!relaxation.relaxed) {
     throw NotConverged(
         fmt::format("relaxation of the given spheres: max net force {:.3g} N after {} passes; set relax to false to "
@@ -48,33 +45,37 @@ State start_state(const RunStore& store, const TestStart& start, const Path& pat
   return state;
 }
 
-}  // namespace
-
-Json preparation_request(const PreparationOptions& o) {
+Json request_of(const PreparationOptions& o) {
   Json request{{"kind", "preparation"}, {"packing", packing_identity(o)}, {"rows", o.rows}};
   request["keep_loading"] = o.keep_loading;
   request["keep_unloading"] = o.keep_unloading;
   return request;
 }
 
-Json test_request(const TestStart& start, const Path& path) {
-  Json request{{"kind", "test"}, {"path", Json(path_to_json(path))}, {"rows", start.rows}};
-  if (start.probes) request["probes"] = Json(probes_to_json(*start.probes));
-  if (!start.given) {
-    request["packing"] = packing_identity(start.preparation);
+Json request_of(const TestSetup& test) {
+  const PreparationOptions& o = test.preparation;
+  Json request{{"kind", "test"}, {"path", Json(path_to_json(test.path))}, {"rows", test.rows}};
+  if (test.probes) request["probes"] = Json(fields_to_json(*test.probes));
+  if (!test.given) {
+    request["packing"] = packing_identity(o);
     return request;
   }
-  Json& given = request["given"] = {{"sha256", start.given_digest}, {"relax", start.relax}};
-  given.update(Json(fields_to_json(start.preparation.packing.material)));
-  given.update(Json(fields_to_json(start.preparation.engine)));
-  given.update(Json(fields_to_json(start.preparation.drive)));
-  if (start.preparation.drive.quasi_static_step == 0) given.erase("quasi_static_step");
+  Json& given = request["given"] = {{"sha256", test.given_digest}, {"relax", test.relax}};
+  given.update(Json(fields_to_json(o.packing.material)));
+  given.update(Json(fields_to_json(o.engine)));
+  given.update(Json(fields_to_json(o.drive)));
+  if (o.drive.quasi_static_step == 0) given.erase("quasi_static_step");
   return request;
 }
 
+}  // namespace
+
+std::string preparation_key(const PreparationOptions& options) { return run_key(request_of(options)); }
+std::string test_key(const TestSetup& test) { return run_key(request_of(test)); }
+
 Json ensure_preparation(const RunStore& store, const PreparationOptions& options, const ResumePolicy& policy,
                         const RunControl& control) {
-  const Json request = preparation_request(options);
+  const Json request = request_of(options);
   const std::string key = run_key(request);
   if (auto record = store.find(key)) return *record;
   const Stopwatch stopwatch;
@@ -103,22 +104,22 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
   return store.find(key).value();
 }
 
-Json ensure_test(const RunStore& store, const TestStart& start, const Path& path, const ResumePolicy& policy,
-                 const RunControl& control) {
-  const Json request = test_request(start, path);
+Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolicy& policy, const RunControl& control) {
+  const PreparationOptions& o = test.preparation;
+  const Json request = request_of(test);
   const std::string key = run_key(request);
   if (auto record = store.find(key)) return *record;
   const Stopwatch stopwatch;
   ElementTestOptions options;
-  options.engine = start.preparation.engine;
-  options.drive = start.preparation.drive;
-  options.relax = start.preparation.relax;
-  options.rows = start.rows;
+  options.engine = o.engine;
+  options.drive = o.drive;
+  options.relax = o.relax;
+  options.rows = test.rows;
   const fs::path folder = policy.resume ? store.reopen(key) : store.begin(key);
   const CheckpointFiles checkpoints(folder, key, policy);
-  const auto segments = resolve(path);
+  const auto segments = resolve(test.path);
   std::optional<PathProbes> probes;
-  if (start.probes) probes.emplace(folder, *start.probes, segments, start.preparation.engine.threads, control);
+  if (test.probes) probes.emplace(folder, *test.probes, segments, o.engine.threads, control);
   auto checkpoint = checkpoints.load();
   if (checkpoint && probes && !probes->take_up()) {
     if (policy.log) policy.log("starts anew: what was probed before the checkpoint is damaged");
@@ -127,28 +128,51 @@ Json ensure_test(const RunStore& store, const TestStart& start, const Path& path
   if (!checkpoint) store.begin(key);
   const double earlier = checkpoint ? checkpoint->seconds : 0;
   const StepObserver on_step = probes ? probes->observer() : StepObserver{};
-  const ElementTest test = checkpoint
-                                    ? continue_element_test(std::move(*checkpoint), segments, options, control,
-                                                                 on_step, checkpoints.checkpointing())
-                                    : run_element_test(start_state(store, start, path, control), segments, options,
-                                                            control, on_step, checkpoints.checkpointing());
-  write_series(folder / "series.csv", test.rows);
-  std::vector<std::string> warnings = test.warnings;
+  const ElementTest done = checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control,
+                                                              on_step, checkpoints.checkpointing())
+                                      : run_element_test(start_state(store, test, control), segments, options, control,
+                                                         on_step, checkpoints.checkpointing());
+  write_series(folder / "series.csv", done.rows);
+  std::vector<std::string> warnings = done.warnings;
   if (probes) {
-    probes->finish(test.end);
+    probes->finish(done.end);
     warnings.insert(warnings.end(), probes->warnings().begin(), probes->warnings().end());
   }
-  State end = test.end;
+  State end = done.end;
   end.digest = key;
   write_state(folder / "end.state", end);
-  const auto width = start.given ? std::nullopt : std::optional(start.preparation.packing.size_width);
+  const auto width = test.given ? std::nullopt : std::optional(o.packing.size_width);
   store.finish(key, request,
                {{"kind", "test"},
                 {"packing", packing_to_json(end, width)},
                 {"warnings", warnings},
-                {"cost", fields_to_json(RunCost{test.steps, test.time_step, earlier + stopwatch.seconds()})},
-                {"provenance", provenance("element test", start.preparation.engine.threads, stopwatch)}});
+                {"cost", fields_to_json(RunCost{done.steps, done.time_step, earlier + stopwatch.seconds()})},
+                {"provenance", provenance("element test", o.engine.threads, stopwatch)}});
   return store.find(key).value();
+}
+
+Job preparation_job(const RunStore& store, const PreparationOptions& options, const std::string& name,
+                    const Execution& execution) {
+  const double work = static_cast<double>(options.packing.particles) * expected_steps(options);
+  return {name, store.find(preparation_key(options)) ? 0 : work, std::nullopt,
+          [&store, &options, policy = policy_of(execution, name)](int threads, const RunControl& control) {
+            PreparationOptions with_threads = options;
+            with_threads.engine.threads = threads;
+            ensure_preparation(store, with_threads, policy, control);
+          }};
+}
+
+Job test_job(const RunStore& store, const TestSetup& test, const std::string& name, std::optional<std::size_t> after,
+             const Execution& execution) {
+  const double particles = test.given ? static_cast<double>(test.given->packing.size())
+                                      : static_cast<double>(test.preparation.packing.particles);
+  const double work = particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path)));
+  return {name, store.find(test_key(test)) ? 0 : work, after,
+          [&store, &test, policy = policy_of(execution, name)](int threads, const RunControl& control) {
+            TestSetup with_threads = test;
+            with_threads.preparation.engine.threads = threads;
+            ensure_test(store, with_threads, policy, control);
+          }};
 }
 
 PackingInfo packing_from_record(const Json& record) {

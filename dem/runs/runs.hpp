@@ -7,29 +7,32 @@
 #include <string>
 #include <vector>
 
-#include "model/files/dataset.hpp"
-#include "dem/runs/probe_json.hpp"
-#include "dem/runs/checkpoint_files.hpp"
-#include "dem/runs/run_store.hpp"
 #include "dem/element_tests/preparation.hpp"
+#include "dem/runs/checkpoint_files.hpp"
+#include "dem/runs/job_list.hpp"
+#include "dem/runs/path_probes.hpp"
+#include "dem/runs/run_store.hpp"
+#include "model/files/dataset.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::dem {
 
-/// Where an element test starts: a kept state of a preparation, or a given state.
-struct TestStart {
+/// An element test: where it starts, a kept state of a preparation or a given state, and its way from there.
+struct TestSetup {
   PreparationOptions preparation;             ///< engine and driving of the test; and the packing unless `given`
-  int rows = 200;                                  ///< rows of each segment of the test
-  std::optional<State> given;                 ///< of a table of spheres or a state file
-  std::string given_digest;                        ///< SHA-256 of what `given` came from
-  bool relax = false;                              ///< minimise `given` before the test
-  std::optional<ProbePlan> probes = std::nullopt;  ///< small-strain probes along the test
+  Path path;                                  ///< nu: of the kept state, or of `given`
+  int rows = 200;                             ///< rows of each segment of the test
+  std::optional<State> given = std::nullopt;  ///< of a table of spheres or a state file, as read
+  std::string given_digest = {};              ///< SHA-256 of what `given` came from, cell included
+  bool relax = false;                         ///< minimise `given` before the test
+  std::optional<ProbeRequest> probes = std::nullopt;  ///< small-strain probes along the test
 };
 
-/// What a run is a function of. The kept states and rows of a preparation do not change what others see of it.
-Json preparation_request(const PreparationOptions& options);
-Json test_request(const TestStart& start, const Path& path);
+/// The key of a run in the store, from what it is a function of. The kept states and rows of a preparation do not
+/// change what others see of it.
+std::string preparation_key(const PreparationOptions& options);
+std::string test_key(const TestSetup& test);
 
 /// Runs the preparation unless it is in the store, from a checkpoint if there is one; its record (run.json). Files:
 /// loading.csv, unloading.csv and one state file for each kept state. Interrupted leaves a checkpoint.
@@ -37,9 +40,15 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
                         const RunControl& control);
 
 /// Likewise an element test; a preparation that it needs must be in the store. Files: series.csv,
-/// end.state, and probes.csv where the start asks for probes.
-Json ensure_test(const RunStore& store, const TestStart& start, const Path& path, const ResumePolicy& policy,
-                 const RunControl& control);
+/// end.state, and probes.csv where it asks for probes.
+Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolicy& policy, const RunControl& control);
+
+/// The same as jobs of this name, without work when the run is in the store. Store, options and test must outlive the
+/// job; `after` is the index of the job that makes the packing.
+Job preparation_job(const RunStore& store, const PreparationOptions& options, const std::string& name,
+                    const Execution& execution);
+Job test_job(const RunStore& store, const TestSetup& test, const std::string& name, std::optional<std::size_t> after,
+             const Execution& execution);
 
 /// What a series on disk was measured on, from a run's record.
 PackingInfo packing_from_record(const Json& record);

@@ -2,18 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
-#include "dem/runs/job_list.hpp"
-#include "dem/runs/preparation_json.hpp"
-#include "dem/runs/runs.hpp"
 #include "dem/runs/spec_file.hpp"
-#include "model/files/durable_file.hpp"
-#include "model/files/output_folder.hpp"
-#include "model/files/path_json.hpp"
 #include "model/files/column.hpp"
+#include "model/files/output.hpp"
+#include "model/files/path_json.hpp"
 #include "model/files/series_csv.hpp"
 
 namespace grainlaw::dem {
@@ -21,36 +15,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TestStart start_of(const TestFile& test) {
-  return {test.preparation, test.preparation.rows, test.given, test.given_digest, test.relax, test.probes};
-}
-
 /// The jobs of the file: the preparation unless the packing is given, then the test unless there is none.
 void run_jobs_of(const TestFile& test, const RunStore& store, const Execution& execution) {
   std::vector<Job> jobs;
   if (!test.given) {
-    const bool done = store.find(run_key(preparation_request(test.preparation))).has_value();
-    const auto particles = static_cast<double>(test.preparation.packing.particles);
     const std::string name = fmt::format("preparation of seed {}", test.preparation.packing.seed);
-    jobs.push_back({name, done ? 0 : particles * expected_steps(test.preparation), std::nullopt,
-                    [&, policy = policy_of(execution, name)](int threads, const RunControl& control) {
-                      PreparationOptions options = test.preparation;
-                      options.engine.threads = threads;
-                      ensure_preparation(store, options, policy, control);
-                    }});
+    jobs.push_back(preparation_job(store, test.preparation, name, execution));
   }
   if (test.start != Start::preparation) {
-    const double particles = test.given ? static_cast<double>(test.given->packing.size())
-                                        : static_cast<double>(test.preparation.packing.particles);
-    const bool done = store.find(run_key(test_request(start_of(test), test.path))).has_value();
-    jobs.push_back({"element test",
-                    done ? 0 : particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path))),
-                    jobs.empty() ? std::nullopt : std::optional<std::size_t>(0),
-                    [&, policy = policy_of(execution, "element test")](int threads, const RunControl& control) {
-                      TestStart start = start_of(test);
-                      start.preparation.engine.threads = threads;
-                      ensure_test(store, start, test.path, policy, control);
-                    }});
+    const auto after = test.given ? std::nullopt : std::optional<std::size_t>(0);
+    jobs.push_back(test_job(store, test, "element test", after, execution));
   }
   run_jobs(jobs, execution.threads, execution.watch, execution.stop);
 }
@@ -114,8 +88,7 @@ SimulationResult simulate(const TestFile& test, const fs::path& output, const Ex
   run_jobs_of(test, store, execution);
 
   const bool prepared = test.start == Start::preparation;
-  const std::string key =
-      run_key(prepared ? preparation_request(test.preparation) : test_request(start_of(test), test.path));
+  const std::string key = prepared ? preparation_key(test.preparation) : test_key(test);
   const Json record = store.find(key).value();
   std::vector<std::string> files = publish(store, key, record, output);
   const Path path = prepared ? unloading_branch(test.preparation) : test.path;

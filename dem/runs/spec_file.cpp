@@ -6,11 +6,12 @@
 #include <cmath>
 #include <set>
 
-#include "model/files/path_json.hpp"
-#include "dem/runs/preparation_json.hpp"
-#include "model/files/schema.hpp"
+#include "dem/runs/feasibility.hpp"
+#include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
+#include "model/files/path_json.hpp"
+#include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -23,11 +24,6 @@ constexpr double kIsoExcursion = 0.03;  // rise of nu in D2-ISO, equations.md 0
 double default_strain(const std::string& mode) {
   if (mode == "D2" || mode == "D3") return kShearStrain;
   return mode == "D2-ISO" ? kPreshear : 0;
-}
-
-std::vector<double> sorted(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values;
 }
 
 TestRequest test_from_json(const Json& object, const std::vector<double>& densities, const std::string& name,
@@ -50,13 +46,14 @@ TestRequest test_from_json(const Json& object, const std::vector<double>& densit
   } else {
     const Json density = object.value("density", Json("all"));
     test.densities = density.is_string()  ? densities
-                     : density.is_array() ? sorted(density.get<std::vector<double>>())
+                     : density.is_array() ? density.get<std::vector<double>>()
                                           : std::vector<double>{density.get<double>()};
+    std::sort(test.densities.begin(), test.densities.end());
   }
   if (object.contains("strain") && test.mode.empty())
     refuse(".strain: belongs to a mode; write it into the segments' extents");
   test.strain = object.value("strain", default_strain(test.mode));
-  if (object.contains("probes")) test.probes = probes_from_json(object["probes"]);
+  if (object.contains("probes")) read_given_fields(object["probes"], test.probes.emplace());
   test.name = object.value("name", default_name(test));
   if (!is_safe_name(test.name))
     refuse(fmt::format(".name: '{}' is no name; use letters, digits, '.', '-', '_'", one_line(test.name, 60)));
@@ -82,26 +79,14 @@ void check_tests(const Spec& spec, const std::string& name) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < spec.tests.size(); ++i) {
     const TestRequest& test = spec.tests[i];
-    const auto refuse = [&](const std::string& what) {
-      throw InvalidInput(fmt::format("{}: tests[{}]{}", name, i, what));
-    };
     const std::vector<double> starts = test.mode == "ISO" ? std::vector<double>{0} : test.densities;
     for (const double nu : starts) {
       if (!names.insert(record_name(test, nu, 0)).second) {
-        refuse(fmt::format(".name: '{}' is the name of an earlier test; give one of them another", test.name));
+        throw InvalidInput(fmt::format(
+            "{}: tests[{}].name: '{}' is the name of an earlier test; give one of them another", name, i, test.name));
       }
       if (test.mode == "ISO") continue;
-      try {
-        const std::vector<StraightSegment> path = resolve(path_of(test, nu, spec));
-        check_can_follow(path);
-        const double steps = expected_steps(spec.preparation, path);
-        if (!(steps <= kMaxSteps))
-          refuse(fmt::format(": takes {:.3g} steps, more than {:.0g}; give a larger strain_rate", steps, kMaxSteps));
-      } catch (const InvalidInput& error) {
-        const std::string reason = error.what();
-        if (reason.starts_with(name)) throw;
-        refuse(fmt::format(": at nu = {}: {}", nu, reason));
-      }
+      check_path(path_of(test, nu, spec), spec.preparation, fmt::format("{}: tests[{}]: at nu = {}", name, i, nu));
     }
   }
 }
@@ -124,7 +109,7 @@ OrderedJson test_to_json(const TestRequest& test) {
   if (test.strain > 0) object["strain"] = test.strain;
   if (test.mode.empty()) object["segments"] = segments_to_json(test.segments);
   object["role"] = to_string(test.role);
-  if (test.probes) object["probes"] = probes_to_json(*test.probes);
+  if (test.probes) object["probes"] = fields_to_json(*test.probes);
   return object;
 }
 
@@ -182,11 +167,9 @@ Path path_of(const TestRequest& test, double nu, const Spec& spec) {
 Spec spec_from_json(const Json& document, const std::string& name) {
   check_schema(document, Schema::spec, name);
   Spec spec;
-  read_preparation(document, spec.preparation);
-  if (document.contains("seeds")) spec.seeds = document["seeds"].get<std::vector<std::uint64_t>>();
-  if (document.contains("densities")) spec.densities = sorted(document["densities"].get<std::vector<double>>());
-  if (document.contains("keep")) spec.keep = sorted(document["keep"].get<std::vector<double>>());
-  spec.coupling = document.value("coupling", "energy");
+  read_given_fields(document, spec);
+  std::sort(spec.densities.begin(), spec.densities.end());
+  std::sort(spec.keep.begin(), spec.keep.end());
   if (document.contains("tests")) {
     for (std::size_t i = 0; i < document["tests"].size(); ++i) {
       spec.tests.push_back(test_from_json(document["tests"][i], spec.densities, name, fmt::format("tests[{}]", i)));
@@ -205,11 +188,7 @@ Spec read_spec(const std::filesystem::path& file) {
 }
 
 OrderedJson spec_to_json(const Spec& spec) {
-  OrderedJson object = preparation_to_json(spec.preparation);
-  object["seeds"] = spec.seeds;
-  object["densities"] = spec.densities;
-  object["keep"] = spec.keep;
-  object["coupling"] = spec.coupling;
+  OrderedJson object = fields_to_json(spec);
   OrderedJson& tests = object["tests"] = OrderedJson::array();
   for (const TestRequest& test : spec.tests) tests.push_back(test_to_json(test));
   return object;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "model/files/json_document.hpp"
-#include "dem/runs/probe_json.hpp"
 #include "dem/element_tests/preparation.hpp"
+#include "dem/runs/path_probes.hpp"
+#include "model/files/json_document.hpp"
 #include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::dem {
@@ -24,7 +24,7 @@ struct TestRequest {
   double strain = 0;                  ///< deviatoric strain to reach; 0: UNI up to nu_max, otherwise unused [-]
   std::vector<PathSegment> segments;  ///< when `mode` is empty
   Role role = Role::calibration;
-  std::optional<ProbePlan> probes = std::nullopt;  ///< small-strain probes along the test; none in ISO
+  std::optional<ProbeRequest> probes = std::nullopt;  ///< small-strain probes along the test; none in ISO
 };
 
 struct Spec {
@@ -35,6 +35,11 @@ struct Spec {
   std::vector<TestRequest> tests;
   std::string coupling = "energy";  ///< of the law that is fitted; the engine does not read it
 };
+/// All keys of SPEC but `tests`, whose entries stand in for each other.
+constexpr auto fields_of(std::type_identity<Spec>) {
+  return std::tuple{Field{&Spec::preparation, ""}, Field{&Spec::seeds, "seeds"}, Field{&Spec::densities, "densities"},
+                    Field{&Spec::keep, "keep"}, Field{&Spec::coupling, "coupling"}};
+}
 
 /// Throws InvalidInput naming file, key, reason and remedy.
 Spec read_spec(const std::filesystem::path& file);

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "model/files/digest.hpp"
-#include "dem/runs/engine_path.hpp"
-#include "model/files/path_json.hpp"
-#include "dem/runs/preparation_json.hpp"
-#include "model/files/schema.hpp"
-#include "model/files/one_line.hpp"
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
+#include "dem/runs/feasibility.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/fields_json.hpp"
+#include "model/files/one_line.hpp"
+#include "model/files/path_json.hpp"
+#include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -64,19 +64,18 @@ TestFile read_test(const std::filesystem::path& file) {
   TestFile test;
   test.start = start_from(document, name);
   PreparationOptions& preparation = test.preparation;
-  read_preparation(document, preparation);
+  read_given_fields(document, preparation);
+  test.rows = preparation.rows;
   preparation.packing.seed = document.value("seed", preparation.packing.seed);
   test.relax = document.value("relax", false);
-  if (document.contains("probes")) test.probes = probes_from_json(document["probes"]);
-  if (test.start == Start::kept) {
-    (branch_from_json(document["initial"]) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
-        .push_back(document["initial"]["nu"].get<double>());
-  }
+  if (document.contains("probes")) read_given_fields(document["probes"], test.probes.emplace());
+  const auto keep = [&](const Json& kept) {
+    (branch_from_json(kept) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
+        .push_back(kept["nu"].get<double>());
+  };
+  if (test.start == Start::kept) keep(document["initial"]);
   if (document.contains("keep")) {
-    for (const Json& kept : document["keep"]) {
-      (branch_from_json(kept) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
-          .push_back(kept["nu"].get<double>());
-    }
+    for (const Json& kept : document["keep"]) keep(kept);
   }
   complete_preparation(preparation, name);
   if (test.start == Start::preparation) return test;
@@ -93,11 +92,7 @@ TestFile read_test(const std::filesystem::path& file) {
             {"segments", document.value("segments", Json::array())}};
   if (test.given) path["initial"]["nu"] = volume_fraction(test.given->packing);
   test.path = path_from_json(path, name, "", false);
-  if (const double steps = expected_steps(preparation, engine_path(test.path, name)); !(steps <= kMaxSteps)) {
-    throw InvalidInput(
-        fmt::format("{}: strain_rate: the test would take {:.3g} steps, more than {:.0g}; give a larger one", name,
-                    steps, kMaxSteps));
-  }
+  check_path(test.path, preparation, name);
   return test;
 }
 

@@ -55,11 +55,11 @@ std::vector<bool> carries_load(const Packing& packing, int threads) {
   return carries;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> names_of(const std::vector<NetworkContact>& contacts) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> names;
-  for (const NetworkContact& c : contacts) names.emplace_back(c.i, c.j);
-  std::sort(names.begin(), names.end());
-  return names;
+std::vector<std::pair<std::uint32_t, std::uint32_t>> ends_of(const std::vector<NetworkContact>& contacts) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;
+  for (const NetworkContact& c : contacts) ends.emplace_back(c.i, c.j);
+  std::sort(ends.begin(), ends.end());
+  return ends;
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ Eigen::Matrix3d stress_of(const std::vector<NetworkContact>& contacts, double st
 
 std::pair<std::size_t, std::size_t> differing_contacts(const std::vector<NetworkContact>& before,
                                                        const std::vector<NetworkContact>& after) {
-  const auto was = names_of(before), is = names_of(after);
+  const auto was = ends_of(before), is = ends_of(after);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> closed, opened;
   std::set_difference(is.begin(), is.end(), was.begin(), was.end(), std::back_inserter(closed));
   std::set_difference(was.begin(), was.end(), is.begin(), is.end(), std::back_inserter(opened));

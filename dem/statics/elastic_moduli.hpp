@@ -3,15 +3,16 @@
 //   dP = B dx + A1 de,  dsigma_par = A2 dx + DG de     x = -eps_vol, e = strain along N, sigma_par = <sigma',N>, <N,N> = 1
 //   B = dP/dx,  DG = d sigma_par/de (= 2G),  A1 = dP/de,  A2 = d sigma_par/dx
 // with N compression positive, in the norm of Eqs. (4) and (8). Twice over: by linear response, exact for unchanged
-// contacts (dem/statics/linear_response.hpp), and by central differences of relaxed states at strains +h and -h, volumetric and along
-// N, with what happened on the way there and back. Identity: A1 = (2/3)(A2 - sigma_par). Section 2 of Kumar, Luding,
-// Magnanimo, Acta Mech. 225 (2014) for the procedure; rattlers are set aside, they carry no load.
+// contacts (dem/statics/linear_response.hpp), and by central differences of relaxed states at strains +h and -h,
+// volumetric and along N, with what happened on the way there and back. Identity: A1 = (2/3)(A2 - sigma_par). Section 2
+// of Kumar, Luding, Magnanimo, Acta Mech. 225 (2014) for the procedure; rattlers are set aside, they carry no load.
 
 #include <limits>
+#include <vector>
 
 #include "dem/statics/balance.hpp"
 #include "dem/statics/linear_response.hpp"
-#include "model/vocabulary/observation.hpp"
+#include "model/vocabulary/probe_row.hpp"
 
 namespace grainlaw::dem {
 
@@ -57,5 +58,13 @@ struct ElasticProbe {
 /// Throws InvalidInput for options out of range, Interrupted.
 ElasticProbe probe_moduli(State state, const Deviator<double>& N, const ProbeOptions& options,
                           const RunControl& control);
+
+// A probe as rows of a table. Here, as in dem/engine/averages.hpp, units are dropped: moduli over k/(2<r>).
+
+/// k/(2<r>): the stress of P* = 1 [Pa].
+double stress_unit(const State& state);
+
+/// One row for each step size of the probe; one without steps where nothing carries load.
+std::vector<ProbeRow> rows_of(const ElasticProbe& probe, double stress_unit);
 
 }  // namespace grainlaw::dem

@@ -9,11 +9,6 @@ namespace {
 constexpr double kTolerance = 1e-11;  // residual of the six solutions over their right-hand sides
 constexpr int kMaxIterations = 100000;
 
-Eigen::Matrix3d contact_stiffness(const NetworkContact& c, double k) {
-  const double bent = c.delta / c.d;
-  return k * ((1 + bent) * c.n * c.n.transpose() - bent * Eigen::Matrix3d::Identity());
-}
-
 /// Forces that the spheres' following the strain g leaves on them.
 Eigen::Matrix3Xd affine_forces(const std::vector<NetworkContact>& contacts, double k, const Eigen::Matrix3d& g,
                                Eigen::Index spheres) {

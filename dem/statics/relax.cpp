@@ -54,7 +54,7 @@ struct Minimiser {
   ThreadTeam team;
   NeighbourList list;
   double near_skin;  // [m]
-  RelaxField field;  // rungs: of the list's neighbours those within near_skin, in its order; w, g: see Totals
+  RelaxField field;  // tiers: of the list's neighbours those within near_skin, in its order; w, g: see Totals
   std::vector<std::uint32_t> lane;  // of each sphere
   std::vector<Row> reference;       // x, y, z at the last rebuild of the list [m]
   std::vector<Row> near_reference;  // x, y, z when the near ones were picked [m]
@@ -69,8 +69,8 @@ struct Minimiser {
     lane.resize(p.size());
     parts.resize(block_count(p.size()));
     field.sphere.resize(parts.size() * kBlockSize);
-    field.first_rung.resize(groups());
-    field.rungs.resize(groups());
+    field.first_tier.resize(groups());
+    field.tiers.resize(groups());
     rebuild();
     rest();
   }
@@ -97,24 +97,24 @@ struct Minimiser {
       field.place[i] = {x[0], x[1], x[2], packing.radius[i]};
     }
     reference = field.place;
-    std::size_t rungs = 0;
+    std::size_t tiers = 0;
     for (std::size_t block = 0; block < parts.size(); ++block) {
-      field.first_rung[block * kGroupsOfBlock] = rungs;
-      rungs += most_rungs(block);
+      field.first_tier[block * kGroupsOfBlock] = tiers;
+      tiers += most_tiers(block);
     }
-    field.rung.resize(rungs);
+    field.tier.resize(tiers);
     pick_near();
   }
 
   /// That the near ones of a block can take, sorted by their numbers.
-  std::size_t most_rungs(std::size_t block) const {
+  std::size_t most_tiers(std::size_t block) const {
     std::vector<std::size_t> count;
     for (std::size_t i = block * kBlockSize; i < std::min(packing.size(), (block + 1) * kBlockSize); ++i)
       count.push_back(list.first[i + 1] - list.first[i]);
     std::sort(count.begin(), count.end(), std::greater<>());
-    std::size_t rungs = 0;
-    for (std::size_t rank = 0; rank < count.size(); rank += kLanes) rungs += count[rank];
-    return rungs;
+    std::size_t tiers = 0;
+    for (std::size_t rank = 0; rank < count.size(); rank += kLanes) tiers += count[rank];
+    return tiers;
   }
 
   void pick_near() {
@@ -139,23 +139,23 @@ struct Minimiser {
     std::iota(order.begin(), last, std::size_t{0});
     std::stable_sort(order.begin(), last, [&](std::size_t a, std::size_t b) { return count(a) > count(b); });
     const auto nobody = static_cast<std::uint32_t>(packing.size());
-    std::size_t next = field.first_rung[block * kGroupsOfBlock];
+    std::size_t next = field.first_tier[block * kGroupsOfBlock];
     for (std::size_t g = 0; g < kGroupsOfBlock; ++g) {
       const std::size_t group = block * kGroupsOfBlock + g;
-      field.first_rung[group] = next;
-      field.rungs[group] = g * kLanes < end - begin ? static_cast<std::uint32_t>(count(order[g * kLanes])) : 0;
-      next += field.rungs[group];
+      field.first_tier[group] = next;
+      field.tiers[group] = g * kLanes < end - begin ? static_cast<std::uint32_t>(count(order[g * kLanes])) : 0;
+      next += field.tiers[group];
       for (std::size_t l = 0; l < kLanes; ++l) {
         const std::size_t rank = g * kLanes + l;
         const bool someone = rank < end - begin;
         field.sphere[group * kLanes + l] = someone ? static_cast<std::uint32_t>(begin + order[rank]) : nobody;
         if (someone) lane[begin + order[rank]] = static_cast<std::uint32_t>(group * kLanes + l);
         const std::size_t own = someone ? count(order[rank]) : 0;
-        for (std::size_t k = 0; k < field.rungs[group]; ++k) {
-          NearRung& rung = field.rung[field.first_rung[group] + k];
+        for (std::size_t k = 0; k < field.tiers[group]; ++k) {
+          NearTier& tier = field.tier[field.first_tier[group] + k];
           const std::size_t c = k < own ? near[first[order[rank]] + k] : 0;
-          rung.place[l] = kRowSize * (k < own ? list.j[c] : nobody);
-          rung.shift[l] = kRowSize * (k < own ? list.image[c] : 0);
+          tier.place[l] = kRowSize * (k < own ? list.j[c] : nobody);
+          tier.shift[l] = kRowSize * (k < own ? list.image[c] : 0);
         }
       }
     }
@@ -208,11 +208,11 @@ struct Minimiser {
   template <class Visit>
   void visit_contacts(std::size_t i, const Visit& visit) const {
     const std::size_t group = lane[i] / kLanes, l = lane[i] % kLanes;
-    for (std::size_t k = 0; k < field.rungs[group]; ++k) {
-      const NearRung& rung = field.rung[field.first_rung[group] + k];
-      const std::size_t j = rung.place[l] / kRowSize;
+    for (std::size_t k = 0; k < field.tiers[group]; ++k) {
+      const NearTier& tier = field.tier[field.first_tier[group] + k];
+      const std::size_t j = tier.place[l] / kRowSize;
       if (j == packing.size()) break;
-      const auto [dx, dy, dz, reach] = between(i, j, rung.shift[l] / kRowSize);
+      const auto [dx, dy, dz, reach] = between(i, j, tier.shift[l] / kRowSize);
       const double d2 = dx * dx + dy * dy + dz * dz;
       if (!(d2 < reach * reach)) continue;
       const double d = std::sqrt(d2);

@@ -25,13 +25,13 @@ ContactSums contact_forces_on(RelaxField& field, std::size_t begin, std::size_t 
     const std::uint32_t* sphere = field.sphere.data() + group * kLanes;
     std::uint32_t own[kLanes];
     for (std::size_t l = 0; l < kLanes; ++l) own[l] = sphere[l] * static_cast<std::uint32_t>(sizeof(Row));
-    const NearRung* rung = field.rung.data() + field.first_rung[group];
+    const NearTier* tier = field.tier.data() + field.first_tier[group];
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const Quartet<Tag<double>> here = gather_rows(d, places, own + o, 0);
       V fx = zero, fy = zero, fz = zero, sum = hn::Load(d, overlap + o), sum2 = hn::Load(d, overlap2 + o);
-      for (std::size_t k = 0; k < field.rungs[group]; ++k) {
-        const Quartet<Tag<double>> there = gather_rows(d, places, rung[k].place + o, 0),
-                                   shift = gather_rows(d, shifts, rung[k].shift + o, 0);
+      for (std::size_t k = 0; k < field.tiers[group]; ++k) {
+        const Quartet<Tag<double>> there = gather_rows(d, places, tier[k].place + o, 0),
+                                   shift = gather_rows(d, shifts, tier[k].shift + o, 0);
         const V dx = hn::Sub(hn::Sub(here.a, there.a), shift.a), dy = hn::Sub(hn::Sub(here.b, there.b), shift.b),
                 dz = hn::Sub(hn::Sub(here.c, there.c), shift.c), reach = hn::Add(here.d, there.d);
         const V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));

@@ -12,7 +12,7 @@
 namespace grainlaw::dem {
 
 /// The k-th near neighbours of the sixteen spheres of a group.
-struct alignas(64) NearRung {
+struct alignas(64) NearTier {
   std::uint32_t place[kLanes];  ///< of the neighbour's row [bytes from the first]
   std::uint32_t shift[kLanes];  ///< of the image's row, likewise
 };
@@ -24,9 +24,9 @@ struct RelaxField {
   std::vector<Row> w;             ///< of the minimiser; [3] is 1/sqrt(m)
   std::vector<Row> g;             ///< net force over k sqrt(m); [3] is the square of net force over k [m^2]
   std::vector<std::uint32_t> sphere;   ///< of each lane; place.size() - 1 where there is none
-  std::vector<std::size_t> first_rung; ///< of each group
-  std::vector<std::uint32_t> rungs;    ///< of each group
-  std::vector<NearRung> rung;
+  std::vector<std::size_t> first_tier; ///< of each group
+  std::vector<std::uint32_t> tiers;    ///< of each group
+  std::vector<NearTier> tier;
 };
 
 /// Sums over contacts, each met twice.

@@ -17,8 +17,7 @@ std::vector<Eigen::Matrix3d> inverse_blocks(const std::vector<NetworkContact>& c
   std::vector<Eigen::Matrix3d> blocks(static_cast<std::size_t>(spheres), Eigen::Matrix3d::Zero());
   for (const NetworkContact& c : contacts) {
     if (c.i == c.j) continue;  // an own image moves along
-    const double bent = c.delta / c.d;
-    const Eigen::Matrix3d M = k * ((1 + bent) * c.n * c.n.transpose() - bent * Eigen::Matrix3d::Identity());
+    const Eigen::Matrix3d M = contact_stiffness(c, k);
     blocks[c.i] += M;
     blocks[c.j] += M;
   }
@@ -37,6 +36,11 @@ Displacements precondition(const std::vector<Eigen::Matrix3d>& inverse, const Di
 }
 
 }  // namespace
+
+Eigen::Matrix3d contact_stiffness(const NetworkContact& c, double k) {
+  const double bent = c.delta / c.d;
+  return k * ((1 + bent) * c.n * c.n.transpose() - bent * Eigen::Matrix3d::Identity());
+}
 
 Displacements stiffness_times(const std::vector<NetworkContact>& contacts, double k, const Displacements& u) {
   Displacements f = Displacements::Zero(3, u.cols());

@@ -12,6 +12,9 @@
 
 namespace grainlaw::dem {
 
+/// M_c [kg/s^2].
+Eigen::Matrix3d contact_stiffness(const NetworkContact& contact, double stiffness);
+
 /// u_1 - u_2 -> M_c (u_1 - u_2) over all contacts; columns are spheres.
 Eigen::Matrix3Xd stiffness_times(const std::vector<NetworkContact>& contacts, double stiffness,
                                  const Eigen::Matrix3Xd& u);

@@ -22,25 +22,31 @@ class Sha256 {
     }
   }
   void add(std::string_view bytes) { EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()); }
-  std::string hex() {
-    std::array<unsigned char, 32> digest{};
-    EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr);
-    std::string text;
-    for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
-    return text;
+  std::string bytes() {
+    std::string digest(32, '\0');
+    EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), nullptr);
+    return digest;
   }
 
  private:
   std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
 };
 
+std::string hex(const std::string& bytes) {
+  std::string text;
+  for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return text;
+}
+
 }  // namespace
 
-std::string sha256(std::string_view bytes) {
+std::string sha256_bytes(std::string_view bytes) {
   Sha256 sum;
   sum.add(bytes);
-  return sum.hex();
+  return sum.bytes();
 }
+
+std::string sha256(std::string_view bytes) { return hex(sha256_bytes(bytes)); }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
   const std::unique_ptr<std::FILE, decltype(&std::fclose)> in(std::fopen(file.c_str(), "rb"), std::fclose);
@@ -49,7 +55,7 @@ std::string sha256_of_file(const std::filesystem::path& file) {
   std::array<char, 1 << 16> buffer{};
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) sum.add({buffer.data(), n});
   if (std::ferror(in.get())) throw Error(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-  return sum.hex();
+  return hex(sum.bytes());
 }
 
 }  // namespace grainlaw

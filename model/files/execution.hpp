@@ -1,13 +1,31 @@
 #pragma once
-// How a call of the library is carried out: threads, progress, interruption, resuming, and what its files say of it.
+// How a call of the library is carried out: threads, progress, interruption, resuming; and what its files say of that
+// and of who made them: version and git revision, compiler and flags, libraries, threads, wall time, memory.
 
+#include <chrono>
 #include <stop_token>
 #include <string>
 
-#include "model/files/provenance.hpp"
+#include "model/files/json_document.hpp"
 #include "model/vocabulary/run_control.hpp"
 
 namespace grainlaw {
+
+/// Version of the engine's results. Finished runs are found again by the digest of their spec and this number, so raise
+/// it with every change that moves any bit of a series or of a state.
+inline constexpr int kEngineVersion = 4;
+
+/// Started with a command, asked when its files are written.
+class Stopwatch {
+ public:
+  double seconds() const;                              ///< wall time since construction [s]
+  const std::string& began() const { return began_; }  ///< UTC, ISO 8601
+  Stopwatch();
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  std::string began_;
+};
 
 struct Execution {
   int threads = 1;                  ///< of all runs together; results do not depend on it
@@ -19,7 +37,14 @@ struct Execution {
   Stopwatch stopwatch = {};         ///< started with the call
 };
 
-/// provenance() of this call.
+/// {grainlaw, git_revision, compiler, build_type, compile_flags, libraries, command, threads, began, seconds,
+/// peak_memory_MB}
+OrderedJson provenance(const std::string& command, int threads, const Stopwatch& stopwatch);
 OrderedJson provenance(const Execution& execution);
+
+/// "grainlaw 0.1.0 (revision)".
+std::string version_text();
+
+double peak_memory_megabytes();  ///< largest resident memory of this process so far [MB]
 
 }  // namespace grainlaw

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "model/files/one_line.hpp"
-#include "model/files/durable_file.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {

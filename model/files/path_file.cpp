@@ -2,14 +2,101 @@
 
 #include <fmt/format.h>
 
-#include "model/files/path_csv.hpp"
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "model/files/csv_table.hpp"
+#include "model/files/one_line.hpp"
 #include "model/files/path_json.hpp"
 #include "model/files/schema.hpp"
-#include "model/files/one_line.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {
+
+constexpr std::size_t kMaxSegments = 10000;  // as in PATH
+constexpr double kMaxStrain = 100;
+constexpr double kSameDirection = 1e-9;  // difference of unit directions that are taken for one
+
+/// Where the six components stand in a row; shears may be absent.
+std::array<std::optional<std::size_t>, 6> strain_columns(const CsvReader& reader) {
+  std::array<std::optional<std::size_t>, 6> columns;
+  for (std::size_t c = 0; c < 6; ++c) {
+    const std::string title = fmt::format("strain_{}", kComponentName[c]);
+    const auto& header = reader.header();
+    const auto at = std::find(header.begin(), header.end(), title);
+    if (at != header.end()) {
+      columns[c] = static_cast<std::size_t>(at - header.begin());
+    } else if (c < 3) {
+      reader.refuse(title, "is missing; give strain_xx, strain_yy and strain_zz, tension positive");
+    }
+  }
+  return columns;
+}
+
+Eigen::Matrix3d strain_of(const CsvReader& reader, const std::array<std::optional<std::size_t>, 6>& columns,
+                          const std::vector<double>& values) {
+  Eigen::Matrix3d strain = Eigen::Matrix3d::Zero();
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (!columns[c]) continue;
+    const double value = values[*columns[c]];
+    const std::string& title = reader.header()[*columns[c]];
+    if (std::isnan(value)) reader.refuse(title, "is empty; a path needs a number in every row");
+    if (std::abs(value) > kMaxStrain)
+      reader.refuse(title, fmt::format("{} is no strain; give logarithmic strain, not per cent", value));
+    const auto [i, j] = kComponentIndex[c];
+    strain(i, j) = strain(j, i) = value;
+  }
+  return strain;
+}
+
+/// The step as a segment whose path parameter is the length of the strain, with the extent that is better conditioned.
+PathSegment segment_of(const Eigen::Matrix3d& step) {
+  const double shear = deviatoric_norm(step), volume = std::abs(step.trace());
+  PathSegment segment;
+  segment.mode = Mode::tensor;
+  segment.direction.tensor = step / step.norm();
+  segment.extent_kind = shear >= volume ? ExtentKind::eps_dev : ExtentKind::eps_vol;
+  segment.extent = std::max(shear, volume);
+  return segment;
+}
+
+/// A measured strain history: from each row to the next a straight segment.
+std::vector<PathSegment> segments_from_csv(const std::filesystem::path& file, double nu) {
+  CsvReader reader(file);
+  const auto columns = strain_columns(reader);
+  std::vector<PathSegment> segments;
+  std::vector<double> values;
+  std::optional<Eigen::Matrix3d> first;
+  Eigen::Matrix3d corner = Eigen::Matrix3d::Zero(), before = corner;  // start of the last segment; the row before
+  while (reader.next(values)) {
+    const Eigen::Matrix3d strain = strain_of(reader, columns, values);
+    if (!first) {
+      first = corner = before = strain;
+      continue;
+    }
+    if (strain == before) continue;
+    if (const double here = nu * std::exp(-(strain - *first).trace()); !(here <= kMaxVolumeFraction)) {
+      reader.refuse("strain_xx", fmt::format("the strain leads to a volume fraction of {:.4g}, beyond {}", here,
+                                             kMaxVolumeFraction));
+    }
+    const PathSegment step = segment_of(strain - before);
+    const bool goes_on =
+        !segments.empty() && (step.direction.tensor - segments.back().direction.tensor).norm() <= kSameDirection;
+    if (goes_on) {
+      segments.back() = segment_of(strain - corner);
+    } else {
+      if (segments.size() == kMaxSegments)
+        reader.refuse("", fmt::format("more than {} changes of direction; smooth or thin the rows", kMaxSegments));
+      corner = before;
+      segments.push_back(step);
+    }
+    before = strain;
+  }
+  if (segments.empty()) reader.refuse("", "the strain never changes; give at least two different rows");
+  return segments;
+}
 
 /// The path of `document`, its segments written out or measured.
 Path path_of(const Json& document, const std::filesystem::path& file, const std::string& name) {

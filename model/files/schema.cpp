@@ -6,14 +6,41 @@
 #include <map>
 #include <set>
 #include <utility>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
 
-#include "model/files/schema_validator.hpp"
-#include "model/files/one_line.hpp"
 #include "grainlaw_schemas.hpp"
+#include "model/files/one_line.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {
+
+/// Place of the first violation, outermost key first; array indices are decimal numbers. Empty place: the document
+/// itself.
+struct Violation {
+  bool found = false;
+  std::vector<std::string> place;
+};
+
+/// By the schema library; `schema` must be free of references. The violation deepest in the document comes first.
+Violation first_violation(const Json& document, const Json& schema) {
+  valijson::Schema compiled;
+  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(schema), compiled);
+  valijson::ValidationResults results;
+  if (valijson::Validator().validate(compiled, valijson::adapters::NlohmannJsonAdapter(document), &results)) return {};
+  Violation violation{true, {}};
+  valijson::ValidationResults::Error error;
+  if (!results.popError(error)) return violation;
+  for (std::size_t i = 1; i < error.context.size(); ++i) {  // the first element is "<root>"
+    const std::string& part = error.context[i];             // "[key]"
+    violation.place.push_back(part.size() >= 2 && part.front() == '[' ? part.substr(1, part.size() - 2) : part);
+  }
+  return violation;
+}
 
 Json parsed(const std::string& file) {
   for (const auto& [name, text] : schemas::kFiles) {
@@ -143,7 +170,8 @@ bool all_different(const Json& array) {
   });
 }
 
-/// Length and uniqueness of arrays. The library compares and reports every pair of elements: too slow for hostile input.
+/// Length and uniqueness of arrays. The library compares and reports every pair of elements: too slow for hostile
+/// input.
 Violation first_array_violation(const Json& value, const Json& s) {
   if (value.is_array() && s.contains("items")) {
     if (value.size() > s.value("maxItems", std::size_t{1000000})) return {true, {}};

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <set>
 
-#include "model/files/column_csv.hpp"
+#include "model/files/column.hpp"
 #include "model/files/one_line.hpp"
-#include "model/files/durable_file.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {

@@ -63,7 +63,7 @@ floor() {
   local json=$out/kernels.json
   taskset -c 0 $bin/bench_kernels --benchmark_filter='^clock$|^force_and_kick/mixed/AVX3' --benchmark_format=json >"$json"
   figure force_pass.cycles_of_16_pairs "$(jq -r '(.benchmarks[] | select(.name == "clock") | .GHz) as $GHz
-    | [.benchmarks[] | select(.name | startswith("force_and_kick/mixed")) | .["ns/sphere"] / .["rungs/sphere"] * $GHz]
+    | [.benchmarks[] | select(.name | startswith("force_and_kick/mixed")) | .["ns/sphere"] / .["tiers/sphere"] * $GHz]
     | min // "missing"' "$json")" stated
   figure force_pass.cycles_of_16_pairs.floor 42 stated
 }

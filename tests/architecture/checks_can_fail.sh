@@ -31,7 +31,7 @@ clean_tree() {
   printf '#include "model/law.hpp"\n#include "predict/solvers/cvode.hpp"\n' >"$tree/predict/predict.hpp"
   echo '#include "predict/predict.hpp"' >"$tree/predict/studies/walker.hpp"
   echo '#include "dem/element_tests/drive.hpp"' >"$tree/dem/runs/runs.hpp"
-  echo '#include <grainlaw_build_info.hpp>' >"$tree/model/files/provenance.cpp"
+  echo '#include <grainlaw_build_info.hpp>' >"$tree/model/files/execution.cpp"
   printf '#include "fit/calibrate.hpp"\n#include "dem/runs/runs.hpp"\n' >"$tree/chain/calibration.hpp"
   printf '#include "chain/calibration.hpp"\n#include "dem/engine/packing.hpp"\n' >"$tree/app/commands.cpp"
   seq 400 | sed 's|^|// |' >"$tree/tests/unit/tensor_test.cpp"

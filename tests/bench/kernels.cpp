@@ -88,8 +88,8 @@ void force_and_kick_pass(benchmark::State& state, const std::string& target) {
   Scene<Real> scene;
   for (auto _ : state) benchmark::DoNotOptimize(force_and_kick(scene.lanes, scene.step, 0, scene.lanes.group.size()));
   per_sphere(state);
-  const auto& rungs = scene.lanes.near_count;
-  state.counters["rungs/sphere"] = std::accumulate(rungs.begin(), rungs.end(), 0.0) / kSpheres;
+  const auto& tiers = scene.lanes.near_count;
+  state.counters["tiers/sphere"] = std::accumulate(tiers.begin(), tiers.end(), 0.0) / kSpheres;
   use_vector_target("");
 }
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dem/engine/energy_account.hpp"
+#include "dem/engine/state.hpp"
 #include "dem/statics/relax.hpp"
 #include "tests/support/dem_families.hpp"
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "dem/element_tests/drive.hpp"
-#include "dem/engine/energy_account.hpp"
+#include "dem/engine/state.hpp"
 #include "dem/engine/lanes/lane_list.hpp"
 #include "dem/engine/simulation.hpp"
 #include "model/vocabulary/path.hpp"

@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "dem/engine/energy_account.hpp"
+#include "dem/engine/state.hpp"
 #include "dem/engine/lanes/lane_list.hpp"
 #include "dem/engine/lanes/lane_search.hpp"
 #include "dem/engine/lanes/lane_state.hpp"

@@ -239,7 +239,7 @@ struct Seating {
   std::vector<std::uint32_t> count;                // ... and how many
   std::vector<std::uint32_t> place;                // of each lane
   std::vector<std::uint32_t> lane;                 // of each place
-  std::vector<std::uint32_t> rungs;                // of each group: neighbours of the sphere with most
+  std::vector<std::uint32_t> tiers;                // of each group: neighbours of the sphere with most
 };
 
 /// Finds the neighbours of all places and seats the spheres of each block by number of near neighbours, so that the lanes of
@@ -249,7 +249,7 @@ Seating seat(const Spatial& s, float narrower, std::size_t n, ThreadTeam& team) 
   seating.blocks.resize(block_count(n));
   seating.neighbour.resize(n);
   for (auto* v : {&seating.count, &seating.place, &seating.lane}) v->resize(n);
-  seating.rungs.assign((n + kLanes - 1) / kLanes, 0);
+  seating.tiers.assign((n + kLanes - 1) / kLanes, 0);
   team.for_each_block(seating.blocks.size(), [&](std::size_t block) {
     const std::size_t begin = block * kBlockSize, end = std::min(n, begin + kBlockSize);
     const Found& found = seating.blocks[block] = search(s, narrower, begin, end);
@@ -265,7 +265,7 @@ Seating seat(const Spatial& s, float narrower, std::size_t n, ThreadTeam& team) 
     for (std::size_t t = begin; t < end; ++t) {
       const std::uint32_t p = seating.place[t];
       seating.lane[p] = static_cast<std::uint32_t>(t);
-      seating.rungs[t / kLanes] = std::max(seating.rungs[t / kLanes], seating.count[p]);
+      seating.tiers[t / kLanes] = std::max(seating.tiers[t / kLanes], seating.count[p]);
     }
   });
   return seating;
@@ -273,12 +273,12 @@ Seating seat(const Spatial& s, float narrower, std::size_t n, ThreadTeam& team) 
 
 template <class Real>
 void make_room_for_list(Lanes<Real>& lanes, const Seating& seating) {
-  const std::size_t groups = seating.rungs.size();
-  lanes.first_rung.assign(groups + 1, 0);
-  for (std::size_t g = 0; g < groups; ++g) lanes.first_rung[g + 1] = lanes.first_rung[g] + seating.rungs[g];
-  for (auto* rung : {&lanes.rung, &lanes.near_rung}) {
-    reserve_on_large_pages(*rung, lanes.first_rung[groups]);
-    rung->resize(lanes.first_rung[groups]);
+  const std::size_t groups = seating.tiers.size();
+  lanes.first_tier.assign(groups + 1, 0);
+  for (std::size_t g = 0; g < groups; ++g) lanes.first_tier[g + 1] = lanes.first_tier[g] + seating.tiers[g];
+  for (auto* tier : {&lanes.tier, &lanes.near_tier}) {
+    reserve_on_large_pages(*tier, lanes.first_tier[groups]);
+    tier->resize(lanes.first_tier[groups]);
   }
   lanes.near_first.assign(groups, 0);
   lanes.near_count.assign(groups, 0);
@@ -286,16 +286,16 @@ void make_room_for_list(Lanes<Real>& lanes, const Seating& seating) {
 
 /// The list of a group: the rows of its spheres' neighbours, then nobody's.
 template <class Real>
-void write_rungs(Lanes<Real>& lanes, const Seating& seating, std::size_t g) {
+void write_tiers(Lanes<Real>& lanes, const Seating& seating, std::size_t g) {
   constexpr auto row_size = static_cast<std::uint32_t>(sizeof(SphereRow<Real>));
-  const auto nobody = static_cast<std::uint32_t>(seating.rungs.size() * kLanes);
+  const auto nobody = static_cast<std::uint32_t>(seating.tiers.size() * kLanes);
   for (std::size_t l = 0; l < kLanes; ++l) {
     const std::size_t t = g * kLanes + l;
     const std::size_t p = t < lanes.spheres ? seating.place[t] : 0;
     const std::uint32_t own = t < lanes.spheres ? seating.count[p] : 0;
-    Rung* rung = lanes.rung.data() + lanes.first_rung[g];
-    for (std::size_t k = 0; k < own; ++k) rung[k].row[l] = row_size * seating.lane[seating.neighbour[p][k]];
-    for (std::size_t k = own; k < seating.rungs[g]; ++k) rung[k].row[l] = row_size * nobody;
+    Tier* tier = lanes.tier.data() + lanes.first_tier[g];
+    for (std::size_t k = 0; k < own; ++k) tier[k].row[l] = row_size * seating.lane[seating.neighbour[p][k]];
+    for (std::size_t k = own; k < seating.tiers[g]; ++k) tier[k].row[l] = row_size * nobody;
   }
 }
 
@@ -351,12 +351,12 @@ void arrange(Lanes<Real>& lanes, const std::array<double, 3>& edge, double skin,
   if (n >= std::numeric_limits<std::int32_t>::max() - kLanes) throw InvalidInput("neighbour list: too many spheres");
   const Spatial s = sort_spatially(lanes, edge, skin, team);
   const Seating seating = seat(s, static_cast<float>(skin - near_skin), n, team);
-  const std::size_t groups = seating.rungs.size();
+  const std::size_t groups = seating.tiers.size();
   make_room_for_list(lanes, seating);
   Regrouped<Real> regrouped(groups);
   team.for_each_block(block_count(n), [&](std::size_t block) {
     for (std::size_t g = block * kBlockSize / kLanes; g < std::min(groups, (block + 1) * kBlockSize / kLanes); ++g) {
-      write_rungs(lanes, seating, g);
+      write_tiers(lanes, seating, g);
       move_in(lanes, s, seating, g, regrouped);
     }
   });

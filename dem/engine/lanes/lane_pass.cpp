@@ -134,10 +134,10 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
   const Edge<Tag<Real>, portable> ex(d, step.edge[0]), ey(d, step.edge[1]), ez(d, step.edge[2]);
   const Real* rows = reinterpret_cast<const Real*>(lanes.row.data());
   LaneTotals totals;
-  fetch_rungs_from(lanes, end);
+  fetch_tiers_from(lanes, end);
   for (std::size_t g = begin; g < end; ++g) {
     const SphereGroup<Real>& own = lanes.group[g];
-    const std::size_t first_rung = lanes.near_first[g], last_rung = first_rung + lanes.near_count[g];
+    const std::size_t first_tier = lanes.near_first[g], last_tier = first_tier + lanes.near_count[g];
     FetchAhead<large, Real> ahead(lanes, g);
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       Quartet<Tag<Real>> at, moving;
@@ -148,9 +148,9 @@ LaneSums forces_on(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, 
       V fx = zero, fy = zero, fz = zero;        // force
       V gx = zero, gy = zero, gz = zero;        // its viscous part
       V box = zero, lost = zero;
-      for (std::size_t rung = first_rung; rung < last_rung; ++rung) {
+      for (std::size_t tier = first_tier; tier < last_tier; ++tier) {
         ahead.some();
-        const std::uint32_t* row = lanes.near_rung[rung].row + o;
+        const std::uint32_t* row = lanes.near_tier[tier].row + o;
         const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0), motion = gather_rows(d, rows, row, 4);
         const V dx = ex(d, hn::Sub(here.x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(here.y, hn::BitCast(di, place.b))),
                 dz = ez(d, hn::Sub(here.z, hn::BitCast(di, place.c)));

@@ -57,21 +57,21 @@ void pick_near_on(Lanes<Real>& lanes, const std::array<double, 3>& edge, std::si
   const Edge<Tag<Real>, false> ex(d, edge[0]), ey(d, edge[1]), ez(d, edge[2]);
   const Real* rows = reinterpret_cast<const Real*>(lanes.row.data());
   const auto nobody = static_cast<std::uint32_t>((lanes.row.size() - 1) * sizeof(SphereRow<Real>));
-  std::size_t next = lanes.first_rung[begin];
+  std::size_t next = lanes.first_tier[begin];
   for (std::size_t g = begin; g < end; ++g) {
     fetch_frontier(lanes, g);
     SphereGroup<Real>& own = lanes.group[g];
     const PlacedGroup<Real>& now = lanes.placed[g];
     std::uint32_t count[kLanes] = {};
-    Rung* picked = lanes.near_rung.data() + next;
+    Tier* picked = lanes.near_tier.data() + next;
     for (std::size_t o = 0; o < kLanes; o += hn::Lanes(d)) {
       const auto x = hn::Load(di, now.x + o), y = hn::Load(di, now.y + o), z = hn::Load(di, now.z + o);
       hn::Store(x, di, own.near_x + o);
       hn::Store(y, di, own.near_y + o);
       hn::Store(z, di, own.near_z + o);
       const V reach = hn::Add(hn::Load(d, now.radius + o), hn::Load(d, own.near_skin + o));
-      for (std::size_t rung = lanes.first_rung[g]; rung < lanes.first_rung[g + 1]; ++rung) {
-        const std::uint32_t* row = lanes.rung[rung].row + o;
+      for (std::size_t tier = lanes.first_tier[g]; tier < lanes.first_tier[g + 1]; ++tier) {
+        const std::uint32_t* row = lanes.tier[tier].row + o;
         const Quartet<Tag<Real>> place = gather_rows(d, rows, row, 0);
         const V dx = ex(d, hn::Sub(x, hn::BitCast(di, place.a))), dy = ey(d, hn::Sub(y, hn::BitCast(di, place.b))),
                 dz = ez(d, hn::Sub(z, hn::BitCast(di, place.c)));

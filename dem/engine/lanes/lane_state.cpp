@@ -125,9 +125,9 @@ double sum_squared_overlaps(const Lanes<Real>& lanes, const Eigen::Matrix3d& H) 
   for (std::size_t g = 0; g < lanes.group.size(); ++g) {
     const PlacedGroup<Real>& own = lanes.placed[g];
     double lane[kLanes] = {};
-    for (std::size_t k = lanes.first_rung[g]; k < lanes.first_rung[g + 1]; ++k) {
+    for (std::size_t k = lanes.first_tier[g]; k < lanes.first_tier[g + 1]; ++k) {
       for (std::size_t l = 0; l < kLanes; ++l) {
-        const SphereRow<Real>& other = lanes.row[lanes.rung[k].row[l] / sizeof(SphereRow<Real>)];
+        const SphereRow<Real>& other = lanes.row[lanes.tier[k].row[l] / sizeof(SphereRow<Real>)];
         const double dx = between(own.x[l], other.x) * ex, dy = between(own.y[l], other.y) * ey, dz = between(own.z[l], other.z) * ez;
         const double reach = static_cast<double>(own.radius[l]) + static_cast<double>(other.radius);
         const double d2 = dx * dx + dy * dy + dz * dz;
@@ -157,11 +157,11 @@ NeighbourList plain_list(const Lanes<Real>& lanes, const Packing& p, Listed whic
   list.first.push_back(0);
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::size_t g = lane[i] / kLanes, l = lane[i] % kLanes;
-    const auto [first, last, rung] = which == Listed::all
-                                         ? std::tuple(lanes.first_rung[g], lanes.first_rung[g + 1], lanes.rung.data())
-                                         : std::tuple(lanes.near_first[g], lanes.near_first[g] + lanes.near_count[g], lanes.near_rung.data());
+    const auto [first, last, tier] = which == Listed::all
+                                         ? std::tuple(lanes.first_tier[g], lanes.first_tier[g + 1], lanes.tier.data())
+                                         : std::tuple(lanes.near_first[g], lanes.near_first[g] + lanes.near_count[g], lanes.near_tier.data());
     for (std::size_t k = first; k < last; ++k) {
-      const std::size_t t = rung[k].row[l] / sizeof(SphereRow<Real>);
+      const std::size_t t = tier[k].row[l] / sizeof(SphereRow<Real>);
       if (t >= lanes.spheres) break;
       const std::uint32_t j = lanes.listed[t / kLanes].sphere[t % kLanes];
       list.j.push_back(j);

@@ -61,7 +61,7 @@ class Fetch {
   const char *at_ = nullptr, *end_ = nullptr;
 };
 
-/// What a pass is about to need of groups near g: rows, as fetch_frontier(), and in large scenes spheres and near rungs, too.
+/// What a pass is about to need of groups near g: rows, as fetch_frontier(), and in large scenes spheres and near tiers, too.
 template <bool large, class Real>
 class FetchAhead {
  public:
@@ -71,7 +71,7 @@ class FetchAhead {
       rows_ = {frontier_rows(lanes, g), kLanes};
       if (g + ahead >= lanes.group.size()) return;
       spheres_ = {&lanes.group[g + ahead], 1};
-      rungs_ = {lanes.near_rung.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]};
+      tiers_ = {lanes.near_tier.data() + lanes.near_first[g + ahead], lanes.near_count[g + ahead]};
     } else {
       fetch_frontier(lanes, g);
     }
@@ -80,29 +80,29 @@ class FetchAhead {
     if constexpr (large) {
       rows_.one();
       spheres_.one();
-      rungs_.one();
+      tiers_.one();
     }
   }
   HWY_INLINE void rest() {
     if constexpr (large) {
       rows_.rest();
       spheres_.rest();
-      rungs_.rest();
+      tiers_.rest();
     }
   }
 
  private:
   Fetch<false, 2> rows_;
   Fetch<true, 3> spheres_;
-  Fetch<false, 3> rungs_;
+  Fetch<false, 3> tiers_;
 };
 
-/// Asks for the first near rungs of the block of groups from `begin` on: they do not follow on those of the block before.
+/// Asks for the first near tiers of the block of groups from `begin` on: they do not follow on those of the block before.
 template <class Real>
-HWY_INLINE void fetch_rungs_from(const Lanes<Real>& lanes, std::size_t begin) {
+HWY_INLINE void fetch_tiers_from(const Lanes<Real>& lanes, std::size_t begin) {
   if (begin >= lanes.group.size()) return;
-  const Rung* rung = lanes.near_rung.data() + lanes.near_first[begin];
-  for (std::size_t k = 0; k < kLanes; ++k) __builtin_prefetch(rung + k, 0, 2);
+  const Tier* tier = lanes.near_tier.data() + lanes.near_first[begin];
+  for (std::size_t k = 0; k < kLanes; ++k) __builtin_prefetch(tier + k, 0, 2);
 }
 
 template <class D>

@@ -79,7 +79,7 @@ inline constexpr float kNobodysRadius = -0x1p100F;
 // State in both lists, so no force depends on when either was made, nor on the skins.
 
 /// The k-th neighbours of the sixteen spheres of a group: where their rows begin [bytes].
-struct alignas(64) Rung {
+struct alignas(64) Tier {
   std::uint32_t row[kLanes];
 };
 
@@ -91,11 +91,11 @@ struct Lanes {
   std::vector<ListedGroup<Real>> listed;
   Rows<Real> row;                          ///< in the order of lanes; the last one is nobody's, for unused places
   Rows<Real> next_row;                     ///< those of the next step while they are written
-  std::vector<std::size_t> first_rung;     ///< of each group, and the end
-  std::vector<Rung> rung;                  ///< the list
-  std::vector<Rung> near_rung;             ///< the near ones, of the groups that were picked together without gaps
+  std::vector<std::size_t> first_tier;     ///< of each group, and the end
+  std::vector<Tier> tier;                  ///< the list
+  std::vector<Tier> near_tier;             ///< the near ones, of the groups that were picked together without gaps
   std::vector<std::size_t> near_first;     ///< of each group
-  std::vector<std::uint32_t> near_count;   ///< rungs of them in each group
+  std::vector<std::uint32_t> near_count;   ///< tiers of them in each group
   std::size_t frontier = 0;                ///< groups from one to the farthest ahead whose rows it reads, roughly
   bool beyond_caches = false;              ///< more spheres than a core's caches hold from step to step
   bool rows_ahead = false;                 ///< placed groups are behind their rows; take_rows() brings them up

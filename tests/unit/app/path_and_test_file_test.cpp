@@ -5,7 +5,7 @@
 #include "model/files/path_json.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "dem/runs/test_file.hpp"
-#include "dem/runs/new_packings.hpp"
+#include "dem/runs/dataset_runs.hpp"
 #include "dem/files/state_file.hpp"
 
 #include "tests/support/temporary_folder.hpp"

@@ -12,7 +12,7 @@
 #include "app/report/series.hpp"
 #include "fit/calibration_file.hpp"
 #include "model/files/dataset.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "model/files/series_csv.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"

@@ -1,7 +1,7 @@
-// one_line, digest, output_folder: parts of a few lines each.
+// one_line, digest, output: parts of a few lines each.
 #include "model/files/digest.hpp"
 #include "model/files/one_line.hpp"
-#include "model/files/output_folder.hpp"
+#include "model/files/output.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::app {

@@ -1,4 +1,4 @@
-#include "model/files/durable_file.hpp"
+#include "model/files/output.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>

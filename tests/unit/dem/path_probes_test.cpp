@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/files/csv_table.hpp"
+#include "dem/files/state_file.hpp"
 #include "dem/runs/run_store.hpp"
 #include "dem/runs/runs.hpp"
-#include "dem/files/state_file.hpp"
+#include "model/files/csv_table.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -22,11 +22,11 @@ class PathProbesTest : public testing::TemporaryFolder {
  protected:
   PathProbesTest() : store_(folder_, "runs") {
     scene::Draw draw(3);
-    start_.given = scene::random_state(60, 3, 0.74, scene::cubic(1), draw);
-    start_.given_digest = "of the scene";
-    start_.relax = true;
-    start_.rows = 10;
-    start_.preparation.drive.strain_rate = 5000;
+    setup_.given = scene::random_state(60, 3, 0.74, scene::cubic(1), draw);
+    setup_.given_digest = "of the scene";
+    setup_.relax = true;
+    setup_.rows = 10;
+    setup_.preparation.drive.strain_rate = 5000;
   }
 
   static Path shear_then_compress() {
@@ -36,15 +36,15 @@ class PathProbesTest : public testing::TemporaryFolder {
              {Mode::ISO, direction_of(Mode::ISO), ExtentKind::eps_vol, 0.015}}};
   }
 
-  fs::path run(const TestStart& start, const Path& path, const ResumePolicy& policy = {},
-               const RunControl& control = {}) {
-    return store_.folder(ensure_test(store_, start, path, policy, control).at("key"));
+  fs::path run(TestSetup test, const Path& path, const ResumePolicy& policy = {}, const RunControl& control = {}) {
+    test.path = path;
+    return store_.folder(ensure_test(store_, test, policy, control).at("key"));
   }
 
-  TestStart probed(ProbePlan plan = {0.01, {1e-6}}) const {
-    TestStart start = start_;
-    start.probes = std::move(plan);
-    return start;
+  TestSetup probed(ProbeRequest probes = {0.01, {1e-6}}) const {
+    TestSetup test = setup_;
+    test.probes = std::move(probes);
+    return test;
   }
 
   /// Values of a column.
@@ -57,18 +57,17 @@ class PathProbesTest : public testing::TemporaryFolder {
   }
 
   RunStore store_;
-  TestStart start_;
+  TestSetup setup_;
 };
 
 TEST_F(PathProbesTest, DoNotDisturbTheRun) {
   scene::Draw draw(3);
-  start_.given =
-      scene::random_state(700, 3, 0.74, scene::cubic(1), draw);  // wide enough for the vector engine
-  start_.given_digest = "of the wide scene";
+  setup_.given = scene::random_state(700, 3, 0.74, scene::cubic(1), draw);  // wide enough for the vector engine
+  setup_.given_digest = "of the wide scene";
   const Path path{0.74, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.004}}};
   for (const Precision precision : {Precision::mixed, Precision::full, Precision::reference}) {
-    start_.preparation.engine.precision = precision;
-    const fs::path without = run(start_, path), with = run(probed({0.002, {1e-6}}), path);
+    setup_.preparation.engine.precision = precision;
+    const fs::path without = run(setup_, path), with = run(probed({0.002, {1e-6}}), path);
     EXPECT_NE(without, with);
     EXPECT_FALSE(fs::exists(without / "probes.csv"));
     EXPECT_EQ(column(with, "B_star").size(), 3u);
@@ -104,9 +103,10 @@ TEST_F(PathProbesTest, AreWhereThePathHasGrown) {
 }
 
 TEST_F(PathProbesTest, SurviveInterruptions) {
-  const TestStart start = probed();
-  const std::string expected = content(run(start, shear_then_compress()) / "probes.csv");
-  const fs::path folder = store_.folder(run_key(test_request(start, shear_then_compress())));
+  TestSetup test = probed();
+  test.path = shear_then_compress();
+  const std::string expected = content(run(test, shear_then_compress()) / "probes.csv");
+  const fs::path folder = store_.folder(test_key(test));
   const auto interrupted_after = [&](int probes) {
     fs::remove(folder / "run.json");
     for (int reports = 0; !fs::exists(folder / kProgress) ||
@@ -119,18 +119,18 @@ TEST_F(PathProbesTest, SurviveInterruptions) {
                                },
                                stop.get_token()};
       ASSERT_LT(reports, 1000);
-      ASSERT_THROW(run(start, shear_then_compress(), {true, 0, {}}, control), Interrupted);
+      ASSERT_THROW(run(test, shear_then_compress(), {true, 0, {}}, control), Interrupted);
     }
   };
   interrupted_after(1);
-  EXPECT_EQ(content(run(start, shear_then_compress()) / "probes.csv"), expected);
+  EXPECT_EQ(content(run(test, shear_then_compress()) / "probes.csv"), expected);
 
   interrupted_after(1);
   std::string damaged = content(folder / kProgress);
   damaged[damaged.find("rows") + 40] ^= 1;
   std::ofstream(folder / kProgress, std::ios::binary) << damaged;
   std::vector<std::string> log;
-  run(start, shear_then_compress(), {true, 60, [&](const std::string& text) { log.push_back(text); }});
+  run(test, shear_then_compress(), {true, 60, [&](const std::string& text) { log.push_back(text); }});
   EXPECT_EQ(content(folder / "probes.csv"), expected);
   EXPECT_NE(log.back().find("what was probed before the checkpoint is damaged"), std::string::npos);
 }
@@ -149,8 +149,8 @@ TEST_F(PathProbesTest, WithoutShearAndWithoutSegments) {
 
 TEST_F(PathProbesTest, WithoutLoadMakeEmptyFields) {
   scene::Draw draw(3);
-  start_.given = scene::random_state(20, 3, 0.2, scene::cubic(1), draw);
-  start_.given_digest = "loose";
+  setup_.given = scene::random_state(20, 3, 0.2, scene::cubic(1), draw);
+  setup_.given_digest = "loose";
   const fs::path folder = run(probed(), {0.2, Branch::unloading, {}});
   EXPECT_TRUE(std::isnan(column(folder, "B_star").at(0)));
   EXPECT_TRUE(std::isnan(column(folder, "step").at(0)));

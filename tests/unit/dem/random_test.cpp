@@ -1,4 +1,4 @@
-#include "dem/engine/random.hpp"
+#include "dem/element_tests/random_gas.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,13 +4,12 @@
 #include <map>
 #include <thread>
 
-#include "model/files/digest.hpp"
-#include "dem/runs/preparation_json.hpp"
-#include "model/files/series_csv.hpp"
-#include "dem/runs/dataset_runs.hpp"
-#include "dem/runs/new_packings.hpp"
-#include "dem/runs/preparation_folder.hpp"
 #include "dem/files/state_file.hpp"
+#include "dem/runs/dataset_runs.hpp"
+#include "dem/runs/feasibility.hpp"
+#include "dem/runs/preparation_folder.hpp"
+#include "model/files/digest.hpp"
+#include "model/files/series_csv.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::dem {
@@ -36,12 +35,12 @@ Path d2(double nu = 0.74) {
 class Runs : public testing::TemporaryFolder {};
 
 TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
-  const std::string key = run_key(preparation_request(tiny()));
+  const std::string key = preparation_key(tiny());
   EXPECT_EQ(key.size(), 64u);
   const auto changed = [&](const std::function<void(PreparationOptions&)>& change) {
     PreparationOptions options = tiny();
     change(options);
-    return run_key(preparation_request(options)) != key;
+    return preparation_key(options) != key;
   };
   using O = PreparationOptions;
   EXPECT_FALSE(changed([](O& o) { o.engine.threads = 7; }));
@@ -70,28 +69,24 @@ TEST_F(Runs, KeyHoldsWhatChangesTheResultAndNothingElse) {
   EXPECT_TRUE(changed([](O& o) { o.keep_unloading = {0.75}; }));
   EXPECT_TRUE(changed([](O& o) { o.rows = 21; }));
 
-  const auto test_key = [](const PreparationOptions& o, const Path& path) {
-    return run_key(test_request({o, o.rows, {}, "", false}, path));
-  };
+  const auto key_of = [](const PreparationOptions& o, const Path& path) { return test_key({o, path, o.rows}); };
   PreparationOptions more = tiny();
   more.keep_unloading = {0.72, 0.74};  // another state kept on the way changes no test
-  EXPECT_EQ(test_key(more, d2()), test_key(tiny(), d2()));
-  EXPECT_NE(run_key(test_request({tiny(), 21, {}, "", false}, d2())), test_key(tiny(), d2()));
+  EXPECT_EQ(key_of(more, d2()), key_of(tiny(), d2()));
+  EXPECT_NE(test_key({tiny(), d2(), 21}), key_of(tiny(), d2()));
   more = tiny();
   more.rows = 77;  // of the branches
-  EXPECT_EQ(run_key(test_request({more, 20, {}, "", false}, d2())),
-            run_key(test_request({tiny(), 20, {}, "", false}, d2())));
+  EXPECT_EQ(test_key({more, d2(), 20}), test_key({tiny(), d2(), 20}));
   PreparationOptions minimised = tiny();
   minimised.drive.quasi_static_step = more.drive.quasi_static_step = 1e-3;  // rows of the branches cut its steps
-  EXPECT_NE(run_key(test_request({more, 20, {}, "", false}, d2())),
-            run_key(test_request({minimised, 20, {}, "", false}, d2())));
+  EXPECT_NE(test_key({more, d2(), 20}), test_key({minimised, d2(), 20}));
   more = tiny();
   more.packing.seed = 5;
-  EXPECT_NE(test_key(more, d2()), test_key(tiny(), d2()));
-  EXPECT_NE(test_key(tiny(), d2(0.75)), test_key(tiny(), d2()));
+  EXPECT_NE(key_of(more, d2()), key_of(tiny(), d2()));
+  EXPECT_NE(key_of(tiny(), d2(0.75)), key_of(tiny(), d2()));
   Path longer = d2();
   longer.segments[0].extent = 0.03;
-  EXPECT_NE(test_key(tiny(), longer), test_key(tiny(), d2()));
+  EXPECT_NE(key_of(tiny(), longer), key_of(tiny(), d2()));
 }
 
 TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
@@ -125,8 +120,8 @@ TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
 TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
   const RunStore store(folder_, "runs");
   ensure_preparation(store, tiny(), {}, {});
-  TestStart start{tiny(), 20, {}, "", false};
-  const Json record = ensure_test(store, start, d2(), {}, {});
+  TestSetup test{tiny(), d2(), 20};
+  const Json record = ensure_test(store, test, {}, {});
   const fs::path series = store.folder(record.at("key")) / "series.csv";
   const auto rows = read_series(series, d2(), packing_from_record(record));
   EXPECT_EQ(rows.size(), 21u);
@@ -137,8 +132,8 @@ TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
 
   const std::string bytes = content(series);
   fs::remove(store.folder(record.at("key")) / "run.json");
-  start.preparation.engine.threads = 2;
-  ensure_test(store, start, d2(), {}, {});
+  test.preparation.engine.threads = 2;
+  ensure_test(store, test, {}, {});
   EXPECT_EQ(content(series), bytes);
 }
 
@@ -237,17 +232,17 @@ TEST_F(Runs, GoOnFromTheirCheckpoints) {
 TEST_F(Runs, DoNotTakeTheCheckpointOfAnother) {
   const RunStore store(folder_, "runs");
   ensure_preparation(store, tiny(), {}, {});
-  const TestStart start{tiny(), 20, {}, "", false};
   const auto interrupted = [&](const Path& path) {
     Interruption interruption("element test");
-    EXPECT_THROW(ensure_test(store, start, path, {true, 0, {}}, interruption.control()), Interrupted);
-    return store.folder(run_key(test_request(start, path))) / kCheckpoint;
+    const TestSetup test{tiny(), path, 20};
+    EXPECT_THROW(ensure_test(store, test, {true, 0, {}}, interruption.control()), Interrupted);
+    return store.folder(test_key(test)) / kCheckpoint;
   };
   Path longer = d2();
   longer.segments[0].extent = 0.03;
   fs::copy_file(interrupted(longer), interrupted(d2()), fs::copy_options::overwrite_existing);
   std::vector<std::string> log;
-  ensure_test(store, start, d2(), {true, 0, [&](const std::string& text) { log.push_back(text); }}, {});
+  ensure_test(store, {tiny(), d2(), 20}, {true, 0, [&](const std::string& text) { log.push_back(text); }}, {});
   ASSERT_FALSE(log.empty());
   EXPECT_NE(log[0].find("is of another run"), std::string::npos) << log[0];
 }
@@ -357,7 +352,7 @@ TEST_F(Runs, OfPredictionsUseNewPackings) {
   EXPECT_EQ(a[0].preparation.keep_unloading, std::vector<double>{0.76});
   const auto denser = plan(spec, {d2(0.76), {}, 50}, {11}, "p.json");  // other rows, the same packing
   EXPECT_EQ(denser[0].rows, 50);
-  EXPECT_EQ(run_key(preparation_request(denser[0].preparation)), run_key(preparation_request(a[0].preparation)));
+  EXPECT_EQ(preparation_key(denser[0].preparation), preparation_key(a[0].preparation));
   EXPECT_NE(refusal([&] {
               plan(spec, {d2(0.69), {}, {}}, {11}, "p.json");
             }).find("0.69 is not on the unloading branch"),

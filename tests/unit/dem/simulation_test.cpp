@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "dem/engine/energy_account.hpp"
+#include "dem/engine/state.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dem/runs/preparation_json.hpp"
+#include "dem/runs/feasibility.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::dem {

@@ -12,7 +12,7 @@
 #include <functional>
 #include <limits>
 
-#include "dem/engine/random.hpp"
+#include "dem/element_tests/random_gas.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "model/files/column_csv.hpp"
+#include "model/files/column.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/vocabulary/observation.hpp"
 

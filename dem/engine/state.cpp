@@ -1,4 +1,4 @@
-#include "dem/engine/energy_account.hpp"
+#include "dem/engine/state.hpp"
 
 #include <cmath>
 

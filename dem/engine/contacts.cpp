@@ -1,4 +1,4 @@
-#include "dem/engine/contact_view.hpp"
+#include "dem/engine/contacts.hpp"
 
 #include <utility>
 

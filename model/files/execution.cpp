@@ -8,7 +8,6 @@
 
 #include <ctime>
 
-#include "model/vocabulary/engine_version.hpp"
 #include "grainlaw_build_info.hpp"
 
 namespace grainlaw {
