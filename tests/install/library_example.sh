@@ -14,10 +14,11 @@ cmake -S "$source/examples/library" -B example -G "$(cached CMAKE_GENERATOR)" \
 cmake --build example >log 2>&1 || fail "$(cat log)"
 
 cat >spec.json <<'JSON'
-{"particles": 64, "strain_rate": 5000, "rows": 60, "seeds": [1, 2], "densities": [0.70, 0.74, 0.78, 0.80]}
+{"particles": 600, "seeds": [1, 2], "strain_rate": 2000, "rows": 60, "keep": [0.72], "densities": [0.70, 0.74, 0.78],
+ "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration"}, {"mode": "D2-ISO", "role": "calibration"}]}
 JSON
 cat >path.json <<'JSON'
-{"initial": {"nu": 0.74}, "segments": [{"mode": "UNI", "eps_dev": 0.03}]}
+{"initial": {"nu": 0.72}, "segments": [{"mode": "UNI", "extent": {"eps_dev": 0.03}}], "rows": 40}
 JSON
 example/chain spec.json path.json by_library >library.txt || fail "the example ends with $?"
 code=0
