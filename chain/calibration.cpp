@@ -135,8 +135,7 @@ fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Exec
 Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const fs::path& output,
                           const Execution& execution, dem::RunCounts& counts) {
   const dem::RunStore store(output, "runs");
-  Dataset dataset =
-      dem::run_planned(plan(spec), Json(dem::spec_to_json(spec)), folder, store, execution, counts);
+  Dataset dataset = dem::run_planned(plan(spec), Json(dem::spec_to_json(spec)), folder, store, execution, counts);
   log_warnings(dataset, execution.watch);
   return dataset;
 }

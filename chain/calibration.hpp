@@ -15,8 +15,8 @@ namespace grainlaw::chain {
 
 /// What is calibrated: a data set, or the spec of one that is to be simulated.
 struct CalibrationInput {
-  std::optional<dem::Spec> spec;             ///< of the data set; none when a given one does not say
-  std::optional<Dataset> dataset = {};       ///< fitted without running DEM; none: `spec` is simulated
+  std::optional<dem::Spec> spec;              ///< of the data set; none when a given one does not say
+  std::optional<Dataset> dataset = {};        ///< fitted without running DEM; none: `spec` is simulated
   std::filesystem::path dataset_folder = {};  ///< where `dataset` was read
 };
 

@@ -59,15 +59,13 @@ struct Law {
   /// With bands, which take the start's error in where the law makes it.
   predict::Prediction along(Rung model, Initial initial, const LawState<double>& start,
                             const std::vector<predict::OutputPoint>& points) const {
-    return predict::predict_with_bands(model, calibrated, segments, start, initial == Initial::law, points,
-                                       control);
+    return predict::predict_with_bands(model, calibrated, segments, start, initial == Initial::law, points, control);
   }
 
   /// From the law's own start.
   predict::Prediction at_equal_steps(Rung model) const {
     const LawState<double> start = predict::state_from_law(calibrated.parameters, path.nu);
-    if (!law_decides(path))
-      return along(model, Initial::law, start, predict::uniform_points(segments, kFreePoints));
+    if (!law_decides(path)) return along(model, Initial::law, start, predict::uniform_points(segments, kFreePoints));
     return predict::predict_by_law(model, calibrated.parameters, calibrated.coupling, path, start, kFreePoints,
                                    predict::Tolerances{}, calibrated.range, control);
   }
@@ -76,8 +74,8 @@ struct Law {
 /// Curves at equal steps, from the law's own start.
 void add_free_curves(const Law& law, predict::PredictionFolder& content) {
   for (const Rung model : law.rungs) {
-    content.curves.push_back({model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)),
-                              law.at_equal_steps(model)});
+    content.curves.push_back(
+        {model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), law.at_equal_steps(model)});
   }
 }
 
@@ -88,9 +86,8 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
     const std::uint64_t seed = test.record.packing.seed;
     for (const Rung model : law.rungs) {
       for (const Initial initial : initials_of(input)) {
-        const auto start = initial == Initial::law
-                               ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
-                               : predict::state_from_row(test.record.rows.front());
+        const auto start = initial == Initial::law ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
+                                                   : predict::state_from_row(test.record.rows.front());
         predict::PredictedCurve curve{model, initial, seed,
                                       fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
                                       law.along(model, initial, start, points)};
@@ -122,10 +119,12 @@ void add_advice(const Law& law, predict::PredictionFolder& content) {
 }
 
 std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const PredictionInput& input) {
-  return plan(runs.spec, input.path, dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name), input.path_name);
+  return plan(runs.spec, input.path, dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name),
+              input.path_name);
 }
 
-Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& folder, const Execution& execution) {
+Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& folder,
+                  const Execution& execution) {
   make_output_folder(runs.store);
   dem::RunCounts counts;
   return dem::run_planned(planned_runs(runs, input), Json(dem::spec_to_json(runs.spec)), folder,
@@ -145,8 +144,10 @@ void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& con
 }  // namespace
 
 PredictionInput read_prediction_input(const fs::path& parameters, const fs::path& path) {
-  PredictionInput input{.law = read_parameters(parameters).law, .law_name = parameters.string(),
-                        .path = read_path(path), .path_name = path.string()};
+  PredictionInput input{.law = read_parameters(parameters).law,
+                        .law_name = parameters.string(),
+                        .path = read_path(path),
+                        .path_name = path.string()};
   input.parameters = {{"file", parameters.string()},
                       {"sha256", sha256_of_file(parameters)},
                       {"dataset_digest", input.law.dataset_digest}};
@@ -175,10 +176,10 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   const bool decides = law_decides(path);
   if (input.initial == Initial::measured && !input.new_runs && !input.finished_runs)
     throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem or --against too");
-  const Law law{input.law, rungs_of(input), path, decides ? std::vector<StraightSegment>{} : resolve(path),
-                {{}, execution.stop}};
+  const Law law{
+      input.law, rungs_of(input), path, decides ? std::vector<StraightSegment>{} : resolve(path), {{}, execution.stop}};
   for (const Rung model : law.rungs) require_parameters(input.law, model, input.law_name);
-  predict::state_from_law(input.law.parameters, path.nu);  // refuses a start below jamming before anything is written
+  predict::state_from_law(input.law.parameters, path.nu);    // refuses a start below jamming before anything is written
   if (input.new_runs) planned_runs(*input.new_runs, input);  // likewise what cannot be run
 
   make_output_folder(output);

@@ -32,10 +32,10 @@ struct FinishedRuns {
 
 struct PredictionInput {
   CalibratedLaw law;
-  Json parameters = {};    ///< where the law is from: {file, sha256, dataset_digest}; for the prediction's files
-  std::string law_name;    ///< stands for it in messages
+  Json parameters = {};  ///< where the law is from: {file, sha256, dataset_digest}; for the prediction's files
+  std::string law_name;  ///< stands for it in messages
   PathFile path;
-  std::string path_name;   ///< likewise
+  std::string path_name;                         ///< likewise
   std::optional<Rung> model = {};                ///< none: reduced, evolution, and memory where it is calibrated
   std::optional<predict::Initial> initial = {};  ///< none: the law's, and with runs the measured one too
   std::optional<NewRuns> new_runs = {};

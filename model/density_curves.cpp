@@ -21,21 +21,35 @@ const std::vector<DensityCurve>& density_curves() {
   using P = const LawParameters<double>&;
   static const std::vector<DensityCurve> curves{
       {"C_star", "{C}*", {"coordination"}, [](P p, double nu) { return p.isotropic.coordination.C_star(nu); }},
-      {"rattler_fraction", "{φ}_{r}",
+      {"rattler_fraction",
+       "{φ}_{r}",
        {"rattlers", "coordination"},
        [](P p, double nu) { return p.isotropic.rattlers.fraction(nu, p.isotropic.coordination.nu_c); }},
-      {"P_star", "{P}*", {"pressure", "coordination", "rattlers"}, [](P p, double nu) { return p.isotropic.P_star(nu); }},
-      {"steady_C_star", "{C}*", {"steady_coordination"}, [](P p, double nu) { return p.steady.coordination.C_star(nu); }},
-      {"steady_rattler_fraction", "{φ}_{r}",
+      {"P_star",
+       "{P}*",
+       {"pressure", "coordination", "rattlers"},
+       [](P p, double nu) { return p.isotropic.P_star(nu); }},
+      {"steady_C_star",
+       "{C}*",
+       {"steady_coordination"},
+       [](P p, double nu) { return p.steady.coordination.C_star(nu); }},
+      {"steady_rattler_fraction",
+       "{φ}_{r}",
        {"steady_rattlers", "steady_coordination"},
        [](P p, double nu) { return p.steady.rattlers.fraction(nu, p.steady.coordination.nu_c); }},
-      {"steady_P_star", "{P}*",
+      {"steady_P_star",
+       "{P}*",
        {"steady_pressure", "steady_coordination", "steady_rattlers"},
        [](P p, double nu) { return p.steady.P_star(nu); }},
-      {"stress_ratio_max", "{s}_{max}", {"stress_ratio_max"}, [](P p, double nu) { return p.stress_ratio_max.value(nu, p.shear_nu_c); }},
+      {"stress_ratio_max",
+       "{s}_{max}",
+       {"stress_ratio_max"},
+       [](P p, double nu) { return p.stress_ratio_max.value(nu, p.shear_nu_c); }},
       {"stress_rate", "{β}_{s}", {"stress_rate"}, [](P p, double nu) { return p.stress_rate.value(nu, p.shear_nu_c); }},
       {"fabric_max", "{F}_{max}", {"fabric_max"}, [](P p, double nu) { return p.fabric_max.value(nu, p.shear_nu_c); }},
-      {"fabric_rate", "{β}_{F}", {"fabric_rate"}, [](P p, double nu) { return p.fabric_rate.value(nu, p.shear_nu_c); }}};
+      {"fabric_rate", "{β}_{F}", {"fabric_rate"}, [](P p, double nu) {
+         return p.fabric_rate.value(nu, p.shear_nu_c);
+       }}};
   return curves;
 }
 

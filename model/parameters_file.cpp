@@ -85,7 +85,8 @@ OrderedJson estimate_to_json(const Estimate& estimate) {
 
 Estimate estimate_from_json(const Json& object) {
   Estimate estimate{number_or_nan(object.at("value")), number_or_nan(object.at("standard_error")),
-                    value_of<Status>(object.at("status").get<std::string>(), "status"), object.value("note", ""), degrees_of_freedom(object)};
+                    value_of<Status>(object.at("status").get<std::string>(), "status"), object.value("note", ""),
+                    degrees_of_freedom(object)};
   if ((estimate.status == Status::not_identified) != std::isnan(estimate.value)) {
     throw InvalidInput(
         fmt::format("value: must be null exactly when the status is '{}'", to_string(Status::not_identified)));

@@ -32,8 +32,8 @@ ExitCode calibrate_to_target(const CalibrateOptions& options, chain::Calibration
   input.spec->coupling = to_string(fit_options.coupling);
   const auto target =
       chain::read_target(*options.target_error, options.target_path, options.quantities, options.max_cost);
-  const chain::TargetCalibration result = chain::calibrate_for(target, *input.spec, options.spec.string(), fit_options,
-                                                               options.output, session);
+  const chain::TargetCalibration result =
+      chain::calibrate_for(target, *input.spec, options.spec.string(), fit_options, options.output, session);
   print_result(session.json ? json_text(result.document) : text_of(result, target, options.output));
   return result.run.outcome == chain::TargetOutcome::met ? ExitCode::ok : ExitCode::not_converged;
 }
@@ -61,7 +61,8 @@ Task declare_calibrate(CLI::App& command) {
   command.add_option("--dataset", options->dataset, "fit this data set without running DEM");
   CLI::Option* target = command.add_option(
       "--target-error", options->target_error,
-      "plan the cheapest runs after which the prediction along --for is known to this, e.g. 0.02: half width of its 95 % "
+      "plan the cheapest runs after which the prediction along --for is known to this, e.g. 0.02: half width of its "
+      "95 % "
       "band with what rate, step and size do, over the largest value; overrides N, seeds, rate, step, densities and "
       "shear strain of SPEC");
   target->check(CLI::Range(1e-4, 1.0));
@@ -79,8 +80,7 @@ Task declare_calibrate(CLI::App& command) {
       .add_option("--loss", options->loss,
                   "squares (default) or huber: rows that are far off, in units of their scatter, count for less")
       ->transform(by_name<fit::Loss>());
-  command
-      .add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
+  command.add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   command.add_flag("--checks", options->checks,

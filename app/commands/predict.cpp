@@ -61,7 +61,8 @@ Task declare_predict(CLI::App& command) {
                   "start from the law or from measured values; default: law, with --dem both")
       ->transform(by_name<predict::Initial>());
   command.add_option("--seeds", options->seeds, "seeds of the new packings, e.g. 11,12")->delimiter(',');
-  command.add_option("--spec", options->spec, "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
+  command.add_option("--spec", options->spec,
+                     "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
   command.add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS");
   return [options](Session& session) { return run_prediction(*options, session); };
 }

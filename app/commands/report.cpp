@@ -1,7 +1,7 @@
 // grainlaw report DIR -o report.html: one page about a calibration and its predictions.
 
-#include "app/commands/commands.hpp"
 #include "app/report/report.hpp"
+#include "app/commands/commands.hpp"
 #include "model/files/json_document.hpp"
 
 namespace grainlaw::app {

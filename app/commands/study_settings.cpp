@@ -27,14 +27,14 @@ ExitCode study_chain(const SettingsOptions& options, Session& session) {
   const auto settings = chain::settings_of(options.data, options.reference, options.vary);
   const Path path = chain::study_path(options.path);
   const std::size_t judged = options.reference.empty() ? 0 : 1;
-  return finish_study(chain::study_chain(settings, judged, path, options.output, session), options.output, "settings.svg",
-                session);
+  return finish_study(chain::study_chain(settings, judged, path, options.output, session), options.output,
+                      "settings.svg", session);
 }
 
 ExitCode study_fit(const SettingsOptions& options, Session& session) {
   const auto path = options.path.empty() ? std::nullopt : std::optional(chain::study_path(options.path));
   return finish_study(chain::study_fit(options.data, path, options.vary, options.output, session), options.output,
-                "settings.svg", session);
+                      "settings.svg", session);
 }
 
 }  // namespace
@@ -67,10 +67,9 @@ Task declare_study_fit(CLI::App& command) {
   command.add_option("FOLDER", options->data, "folder of a data set or of a calibration")->required();
   command.add_option("-o,--output", options->output, "folder for study.json and settings.svg")->required();
   command.add_option("--for", options->path, "PATH.json of a prediction to judge by; default: the laws");
-  command.add_option(
-      "--vary", options->vary,
-      "KEY=VALUE, one setting each: rows_every=k, packings=n, densities_every=k, shear_strain=fraction, "
-      "loss=huber; default: the usual ones");
+  command.add_option("--vary", options->vary,
+                     "KEY=VALUE, one setting each: rows_every=k, packings=n, densities_every=k, shear_strain=fraction, "
+                     "loss=huber; default: the usual ones");
   return [options](Session& session) { return study_fit(*options, session); };
 }
 

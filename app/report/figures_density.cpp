@@ -81,8 +81,8 @@ Panel state_panel(const chain::ReportInput& input, const char* label, const std:
 
 /// A quantity of isotropic unloading alone, its law where `group` is identified; symbols are named in the first panel.
 template <class Measured, class Law>
-Panel unloading_panel(const chain::ReportInput& input, const char* label, const char* symbols_name, const Measured& measured,
-                      const char* group, const Law& law) {
+Panel unloading_panel(const chain::ReportInput& input, const char* label, const char* symbols_name,
+                      const Measured& measured, const char* group, const Law& law) {
   const Range range = shown_range(input);
   Panel panel = density_panel(label, range);
   add_isotropic_symbols(panel, input, symbols_name, measured);

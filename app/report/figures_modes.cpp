@@ -69,7 +69,8 @@ Panel time_panel(const chain::ReportInput& input) {
 }
 
 /// Figs. 4, 6, 7: `measured` over volume fraction on both branches of ISO and UNI; published: the curve of Table 2.
-void add_branches(Panel& panel, const chain::ReportInput& input, double Observation::*measured, const DensityCurve& law) {
+void add_branches(Panel& panel, const chain::ReportInput& input, double Observation::*measured,
+                  const DensityCurve& law) {
   double from = 1, to = 0;
   for (const TestRecord& test : input.tests) {
     const bool cycle = is_uniaxial_cycle(test);
@@ -137,7 +138,8 @@ Panel scaled_panel(const chain::ReportInput& input) {
 }
 
 /// Figs. 5, 8: D2 from both branches, where a density has both.
-Panel branches_of_shear(const chain::ReportInput& input, const char* title, const char* label, double Observation::*measured) {
+Panel branches_of_shear(const chain::ReportInput& input, const char* title, const char* label,
+                        double Observation::*measured) {
   Panel panel = panel_of(title, kStrainLabel, label);
   std::vector<const TestRecord*> sheared, from_loading;
   for (const TestRecord& test : input.tests) {

@@ -66,7 +66,8 @@ double largest_strain(const TestRecord& test) {
 }
 
 /// A run, and Eq. (17) or (18) fitted to it where that was possible.
-void add_run(Panel& panel, const TestRecord& test, const chain::ReportInput& input, const Saturation& what, std::size_t seed) {
+void add_run(Panel& panel, const TestRecord& test, const chain::ReportInput& input, const Saturation& what,
+             std::size_t seed) {
   const std::string number = std::to_string(test.packing.seed);
   panel.series.push_back(through(open_symbols(plain("DEM seed " + number), colour_of(seed), marker_of(seed), 2),
                                  symbol_rows(test, 70), &Observation::eps_dev, what.measured));

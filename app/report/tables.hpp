@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "chain/report_input.hpp"
 #include "app/report/table.hpp"
+#include "chain/report_input.hpp"
 
 namespace grainlaw::app::report {
 

@@ -116,8 +116,9 @@ Table provenance_table(const chain::ReportInput& input) {
     for (const std::string& file : fact.files) files += (files.empty() ? "" : ", ") + file;
     return files;
   };
-  return table_of("Where this comes from", "", input.provenance,
-                  {{"what", words, &chain::Fact::what}, {"value", words, &chain::Fact::value}, {"said by", words, said_by}});
+  return table_of(
+      "Where this comes from", "", input.provenance,
+      {{"what", words, &chain::Fact::what}, {"value", words, &chain::Fact::value}, {"said by", words, said_by}});
 }
 
 Table spec_table(const chain::ReportInput& input) {

@@ -93,7 +93,8 @@ std::string ProgressPrinter::status() const {
     if (job.running) running += fmt::format("{}{}", running.empty() ? "" : ", ", job.name);
   }
   const double elapsed = seconds_since(began_), gained = covered - earlier;
-  std::string text = fmt::format("{:3.0f} %, {} of {} runs", expected > 0 ? 100 * covered / expected : 100, done, jobs_.size());
+  std::string text =
+      fmt::format("{:3.0f} %, {} of {} runs", expected > 0 ? 100 * covered / expected : 100, done, jobs_.size());
   if (elapsed > 1 && worked > 0) text += fmt::format(", {}", rate_text(worked / elapsed, unit_));
   if (elapsed > 2 && gained > 0.005 * expected)
     text += fmt::format(", {} left", clock_text(elapsed * (expected - covered) / gained));

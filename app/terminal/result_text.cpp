@@ -53,9 +53,9 @@ std::string coverage_text(const predict::Comparison& comparison) {
 
 std::string text_of(const dem::SimulationResult& simulation, const fs::path& output) {
   const OrderedJson& summary = simulation.summary;
-  std::string text = fmt::format("{} spheres, {} rows, end of the {}:\n",
-                                 summary.at("packing").at("particles").get<std::int64_t>(), simulation.rows.size(),
-                                 summary.contains("path") ? "path" : "unloading branch");
+  std::string text =
+      fmt::format("{} spheres, {} rows, end of the {}:\n", summary.at("packing").at("particles").get<std::int64_t>(),
+                  simulation.rows.size(), summary.contains("path") ? "path" : "unloading branch");
   for (const auto& value : summary.at("end").items()) {
     text += value.value().is_null() ? fmt::format("  {:<18} undefined\n", value.key())
                                     : fmt::format("  {:<18} {:.6g}\n", value.key(), value.value().get<double>());

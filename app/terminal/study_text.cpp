@@ -59,14 +59,15 @@ std::string study_text(const chain::SettingsStudy& study) {
 }
 
 std::string study_text(const predict::IntegratorStudy& study) {
-  std::string text = fmt::format("least microseconds of a path with an error of at most {:.0e}\n", predict::kWantedError);
+  std::string text =
+      fmt::format("least microseconds of a path with an error of at most {:.0e}\n", predict::kWantedError);
   for (const predict::WorkPrecision& panel : study.panels) {
     text += fmt::format("{}: {}\n", panel.path.name, panel.path.description);
     for (const predict::Integrator& integrator : predict::kIntegrators) {
       const predict::WorkPoint* point = predict::quickest(panel, predict::kWantedError, &integrator);
       text += point ? fmt::format("  {:<7} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
-                                  to_string(integrator), point->microseconds, point->rhs_evaluations,
-                                  point->error, point->accuracy)
+                                  to_string(integrator), point->microseconds, point->rhs_evaluations, point->error,
+                                  point->accuracy)
                     : fmt::format("  {:<7} not reached\n", to_string(integrator));
     }
   }

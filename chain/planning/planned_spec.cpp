@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "dem/runs/feasibility.hpp"
 #include "dem/runs/dataset_runs.hpp"
+#include "dem/runs/feasibility.hpp"
 #include "fit/data/options.hpp"
 
 namespace grainlaw::chain {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "dem/runs/spec_file.hpp"
 #include "chain/planning/precision_plan.hpp"
+#include "dem/runs/spec_file.hpp"
 
 namespace grainlaw::chain {
 

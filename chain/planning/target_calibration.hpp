@@ -16,8 +16,8 @@ PrecisionTarget read_target(double error, const std::filesystem::path& path, con
                             double max_seconds);
 
 struct TargetCalibration {
-  TargetRun run;        ///< pilot, candidates, rounds, outcome
-  dem::Spec planned;    ///< of the last round
+  TargetRun run;         ///< pilot, candidates, rounds, outcome
+  dem::Spec planned;     ///< of the last round
   OrderedJson document;  ///< what plan.json holds
 };
 

@@ -9,8 +9,8 @@
 
 #include "chain/studies/law_quantities.hpp"
 #include "fit/calibrate.hpp"
-#include "model/files/path_file.hpp"
 #include "model/files/execution.hpp"
+#include "model/files/path_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {

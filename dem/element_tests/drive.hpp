@@ -17,20 +17,21 @@ enum class Profile { cosine, constant };
 constexpr auto names_of(Profile) { return std::array{"cosine", "constant"}; }
 
 struct DriveOptions {
-  double strain_rate = 138;                      ///< peak of max(|eps_vol rate|, eps_dev rate) along a segment [1/s]
+  double strain_rate = 138;  ///< peak of max(|eps_vol rate|, eps_dev rate) along a segment [1/s]
   Profile profile = Profile::cosine;
   Transport transport = Transport::homogeneous;
-  double quasi_static_step = 0;  ///< > 0: no dynamics, but minimised steps of at most this strain (dem/element_tests/stepper.hpp) [-]
+  double quasi_static_step =
+      0;  ///< > 0: no dynamics, but minimised steps of at most this strain (dem/element_tests/stepper.hpp) [-]
 };
 constexpr auto fields_of(std::type_identity<DriveOptions>) {
   using D = DriveOptions;
-  return std::tuple{
-      Field{&D::strain_rate, "strain_rate", "1/s", "", "peak of max(|eps_vol rate|, eps_dev rate)"},
-      Field{&D::quasi_static_step, "quasi_static_step", "", "",
-            "0: dynamics; above: no dynamics, but affine steps of at most this strain, each followed by a minimisation of "
-            "energy"},
-      Field{&D::profile, "driving", "", "", "profile of the strain rate in time"},
-      Field{&D::transport, "transport", "", "", "what moves with the cell: spheres or only its walls"}};
+  return std::tuple{Field{&D::strain_rate, "strain_rate", "1/s", "", "peak of max(|eps_vol rate|, eps_dev rate)"},
+                    Field{&D::quasi_static_step, "quasi_static_step", "", "",
+                          "0: dynamics; above: no dynamics, but affine steps of at most this strain, each followed by "
+                          "a minimisation of "
+                          "energy"},
+                    Field{&D::profile, "driving", "", "", "profile of the strain rate in time"},
+                    Field{&D::transport, "transport", "", "", "what moves with the cell: spheres or only its walls"}};
 }
 static_assert(tells_every_member<DriveOptions>());
 

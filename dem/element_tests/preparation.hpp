@@ -18,32 +18,28 @@ struct PreparationOptions {
   EngineOptions engine;
   DriveOptions drive;
   RelaxOptions relax;
-  double nu_gas = 0.3;            ///< volume fraction of the random gas [-]
-  double nu_start = 0.64;         ///< end of the gas compression [-]
-  double nu_max = 0.82;           ///< end of the loading branch [-]
+  double nu_gas = 0.3;                 ///< volume fraction of the random gas [-]
+  double nu_start = 0.64;              ///< end of the gas compression [-]
+  double nu_max = 0.82;                ///< end of the loading branch [-]
   double gas_compression_factor = 10;  ///< strain rate of the gas compression over drive.strain_rate [-]
   std::vector<double> keep_loading;    ///< densities kept on the loading branch, within [nu_start, nu_max]
   std::vector<double> keep_unloading;  ///< densities kept on the unloading branch, within [nu_start or nu_end, nu_max]
-  std::optional<double> nu_end;   ///< end of the unloading branch; default: lowest of keep_unloading, else nu_start [-]
-  int rows = 200;                 ///< rows of each branch's series (besides the first)
+  std::optional<double> nu_end;  ///< end of the unloading branch; default: lowest of keep_unloading, else nu_start [-]
+  int rows = 200;                ///< rows of each branch's series (besides the first)
 };
 constexpr auto fields_of(std::type_identity<PreparationOptions>) {
   using P = PreparationOptions;
-  return std::tuple{
-      Field{&P::packing, ""},
-      Field{&P::engine, ""},
-      Field{&P::drive, ""},
-      Field{&P::relax, ""},
-      Field{&P::rows, "rows", "", "", "rows recorded in each segment"},
-      Field{&P::nu_gas, "nu_gas", "", "nu", "volume fraction of the random gas", Rule::fixed},
-      Field{&P::gas_compression_factor, "gas_compression_factor", "", "",
-            "strain rate of the gas compression over strain_rate", Rule::fixed},
-      Field{&P::nu_start, "nu_start", "", "nu", "volume fraction at which loading begins"},
-      Field{&P::nu_max, "nu_max", "", "nu", "volume fraction at which unloading begins"},
-      Field{&P::nu_end, "nu_end", "", "nu", "volume fraction at which unloading ends"},
-      // what is kept on the way does not change what others see of a preparation; its own key names them
-      Field{&P::keep_loading, "keep_loading", "", "", "", Rule::free},
-      Field{&P::keep_unloading, "keep_unloading", "", "", "", Rule::free}};
+  return std::tuple{Field{&P::packing, ""}, Field{&P::engine, ""}, Field{&P::drive, ""}, Field{&P::relax, ""},
+                    Field{&P::rows, "rows", "", "", "rows recorded in each segment"},
+                    Field{&P::nu_gas, "nu_gas", "", "nu", "volume fraction of the random gas", Rule::fixed},
+                    Field{&P::gas_compression_factor, "gas_compression_factor", "", "",
+                          "strain rate of the gas compression over strain_rate", Rule::fixed},
+                    Field{&P::nu_start, "nu_start", "", "nu", "volume fraction at which loading begins"},
+                    Field{&P::nu_max, "nu_max", "", "nu", "volume fraction at which unloading begins"},
+                    Field{&P::nu_end, "nu_end", "", "nu", "volume fraction at which unloading ends"},
+                    // what is kept on the way does not change what others see of a preparation; its own key names them
+                    Field{&P::keep_loading, "keep_loading", "", "", "", Rule::free},
+                    Field{&P::keep_unloading, "keep_unloading", "", "", "", Rule::free}};
 }
 static_assert(tells_every_member<PreparationOptions>());
 
@@ -61,7 +57,7 @@ struct KeptState {
 
 /// Receives results as they come, in order of time, so that the caller can save them.
 struct PreparationSink {
-  std::function<void(const KeptState&)> keep;                       ///< required
+  std::function<void(const KeptState&)> keep;                           ///< required
   std::function<void(Branch, const std::vector<Observation>&)> series;  ///< whole series of a branch; required
   std::function<void(const std::string&)> warn;  ///< energy or rate beyond their limits, with the stage; may be empty
   /// Whether a continued preparation delivered this state before it was interrupted; it is not made again. May be empty.

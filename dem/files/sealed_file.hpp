@@ -23,8 +23,8 @@ class NumberWriter {
  public:
   void number(double value);
   void word(std::uint64_t value);
-  void refuse() { sound_ = false; }       ///< what was collected contradicts itself
-  bool sound() const { return sound_; }   ///< every number was finite and nothing was refused
+  void refuse() { sound_ = false; }      ///< what was collected contradicts itself
+  bool sound() const { return sound_; }  ///< every number was finite and nothing was refused
   const std::string& bytes() const { return bytes_; }
 
  private:

@@ -13,8 +13,8 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "model/files/output.hpp"
 #include "dem/engine/neighbour_list.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -31,7 +31,8 @@ constexpr std::array<std::string_view, kColumns> kName{"id", "x", "y", "z", "r",
 constexpr std::array<std::string_view, kColumns> kUnit{"", "m", "m", "m", "m", "m/s", "m/s", "m/s"};
 
 /// What is wrong where, as one line.
-InvalidInput refusal(const std::filesystem::path& file, std::size_t row, std::string_view column, const std::string& why) {
+InvalidInput refusal(const std::filesystem::path& file, std::size_t row, std::string_view column,
+                     const std::string& why) {
   const std::string where = column.empty() ? fmt::format("row {}", row) : fmt::format("row {}, column {}", row, column);
   return InvalidInput(fmt::format("{}: {}: {}", file.string(), where, why));
 }
@@ -103,12 +104,14 @@ std::vector<Column> read_header(const std::filesystem::path& file, std::string_v
     const std::string_view name = trimmed(field.substr(0, bracket));
     const auto known = std::find(kName.begin(), kName.end(), name);
     if (known == kName.end()) {
-      throw refusal(file, 1, quoted(name), "is no column of a sphere table; give a header with id,x,y,z,r and, if "
-                                           "known, vx,vy,vz, separated by commas");
+      throw refusal(file, 1, quoted(name),
+                    "is no column of a sphere table; give a header with id,x,y,z,r and, if "
+                    "known, vx,vy,vz, separated by commas");
     }
     const auto column = static_cast<Column>(known - kName.begin());
     if (bracket != std::string_view::npos && field.substr(bracket) != fmt::format("[{}]", kUnit[column])) {
-      throw refusal(file, 1, name, fmt::format("unit {} is not [{}]; convert it", quoted(field.substr(bracket)), kUnit[column]));
+      throw refusal(file, 1, name,
+                    fmt::format("unit {} is not [{}]; convert it", quoted(field.substr(bracket)), kUnit[column]));
     }
     if (seen[column]) throw refusal(file, 1, name, "appears twice");
     seen[column] = true;
@@ -117,7 +120,8 @@ std::vector<Column> read_header(const std::filesystem::path& file, std::string_v
   for (std::size_t c = 0; c < vx; ++c) {
     if (!seen[c]) throw refusal(file, 1, kName[c], "is missing");
   }
-  if (seen[vx] != seen[vy] || seen[vx] != seen[vz]) throw refusal(file, 1, "vx, vy, vz", "give all three velocities or none");
+  if (seen[vx] != seen[vy] || seen[vx] != seen[vz])
+    throw refusal(file, 1, "vx, vy, vz", "give all three velocities or none");
   return order;
 }
 
@@ -134,12 +138,13 @@ struct Sphere {
   std::array<double, kColumns> value{};  // SI; [id] unused
 };
 
-Sphere read_row(const std::filesystem::path& file, std::size_t row, std::string_view line, const std::vector<Column>& order) {
+Sphere read_row(const std::filesystem::path& file, std::size_t row, std::string_view line,
+                const std::vector<Column>& order) {
   Sphere sphere;
   const auto fields = static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
   if (fields != order.size()) {
-    throw refusal(file, row, "", fmt::format("has {} fields, the header has {} (is a decimal comma in use?)", fields,
-                                             order.size()));
+    throw refusal(file, row, "",
+                  fmt::format("has {} fields, the header has {} (is a decimal comma in use?)", fields, order.size()));
   }
   split(line, [&](std::size_t field, std::string_view text) {
     const Column column = order[field];
@@ -160,7 +165,8 @@ Sphere read_row(const std::filesystem::path& file, std::size_t row, std::string_
 
 void check_cell(const std::filesystem::path& file, const Eigen::Matrix3d& H) {
   if (!H.allFinite() || H(1, 0) != 0 || H(2, 0) != 0 || H(2, 1) != 0 || !(H.diagonal().minCoeff() > 0)) {
-    throw InvalidInput(fmt::format("{}: its cell must be upper triangular with a positive, finite diagonal", file.string()));
+    throw InvalidInput(
+        fmt::format("{}: its cell must be upper triangular with a positive, finite diagonal", file.string()));
   }
 }
 
@@ -184,7 +190,8 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
   check_cell(file, cell);
   LineReader lines(file);
   std::string line;
-  if (!lines.next(line)) throw refusal(file, 1, "", "the file is empty; give a header id,x,y,z,r and one row per sphere");
+  if (!lines.next(line))
+    throw refusal(file, 1, "", "the file is empty; give a header id,x,y,z,r and one row per sphere");
   const std::vector<Column> order = read_header(file, line);
 
   State state;
@@ -202,7 +209,8 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
     }
     const Sphere sphere = read_row(file, lines.row, line, order);
     const auto [earlier, fresh] = row_of.emplace(sphere.name, lines.row);
-    if (!fresh) throw refusal(file, lines.row, "id", fmt::format("{} is already in row {}", sphere.name, earlier->second));
+    if (!fresh)
+      throw refusal(file, lines.row, "id", fmt::format("{} is already in row {}", sphere.name, earlier->second));
     if (p.size() == kMaxRows) throw refusal(file, lines.row, "", "more than 1e8 spheres are not supported");
     const auto& value = sphere.value;
     const Eigen::Vector3d s = inverse * Eigen::Vector3d(value[x], value[y], value[z]);

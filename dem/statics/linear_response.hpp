@@ -14,7 +14,8 @@
 
 namespace grainlaw::dem {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< P and sigma', or x and e, in the coordinates of model/vocabulary/tensor.hpp
+using Vector6 =
+    Eigen::Matrix<double, 6, 1>;  ///< P and sigma', or x and e, in the coordinates of model/vocabulary/tensor.hpp
 using Tangent = Eigen::Matrix<double, 6, 6>;  ///< rows P, sigma'; columns x, e [Pa]
 
 /// (P, sigma') of a stress.

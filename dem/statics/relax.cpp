@@ -11,8 +11,8 @@
 #include <numeric>
 #include <vector>
 
-#include "dem/statics/relax_pass.hpp"
 #include "dem/engine/run_watch.hpp"
+#include "dem/statics/relax_pass.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -46,7 +46,7 @@ constexpr double kFarAway = 1e150;  // [m]; its square is finite
 struct Totals {
   double gw = 0, gg = 0, ww = 0;  // sums of g.w, g.g, w.w
   ContactSums contacts;
-  double f2_max = 0;              // largest f.f [m^2]
+  double f2_max = 0;  // largest f.f [m^2]
 };
 
 struct Minimiser {
@@ -195,7 +195,9 @@ struct Minimiser {
         near_moved2[block] = std::max(near_moved2[block], distance2(field.place[i], near_reference[i]));
       }
     });
-    const auto farthest = [](const std::vector<double>& d2) { return std::sqrt(*std::max_element(d2.begin(), d2.end())); };
+    const auto farthest = [](const std::vector<double>& d2) {
+      return std::sqrt(*std::max_element(d2.begin(), d2.end()));
+    };
     if (!(farthest(moved2) < allowed_displacement(list, packing.H, packing.H))) {
       store();
       rebuild();
@@ -217,7 +219,8 @@ struct Minimiser {
       if (!(d2 < reach * reach)) continue;
       const double d = std::sqrt(d2);
       if (!std::isfinite(dx / d + dy / d + dz / d)) {  // at zero distance, or where its square underflows
-        throw Error(fmt::format("spheres {} and {} share one position; move one of them", packing.id[i], packing.id[j]));
+        throw Error(
+            fmt::format("spheres {} and {} share one position; move one of them", packing.id[i], packing.id[j]));
       }
       visit(dx / d, dy / d, dz / d, reach - d);
     }
@@ -260,7 +263,8 @@ struct Minimiser {
   void add_to(Totals& sum, std::size_t i) const {
     const Row &w = field.w[i], &g = field.g[i];
     const double f2 = g[3], inverse = w[3];
-    if (!std::isfinite(f2)) visit_contacts(i, [](double, double, double, double) {});  // says with whom it shares its place
+    if (!std::isfinite(f2))
+      visit_contacts(i, [](double, double, double, double) {});  // says with whom it shares its place
     sum.f2_max = std::max(sum.f2_max, f2);
     sum.gg += f2 * inverse * inverse;
     sum.gw += g[0] * w[0] + g[1] * w[1] + g[2] * w[2];

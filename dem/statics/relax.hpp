@@ -10,8 +10,8 @@
 namespace grainlaw::dem {
 
 struct RelaxOptions {
-  double tolerance = 1e-5;              ///< max net force over mean contact force [-]
-  std::int64_t max_passes = 200000;     ///< force passes before giving up
+  double tolerance = 1e-5;           ///< max net force over mean contact force [-]
+  std::int64_t max_passes = 200000;  ///< force passes before giving up
 };
 constexpr auto fields_of(std::type_identity<RelaxOptions>) {
   return std::tuple{Field{&RelaxOptions::tolerance, "relax_tolerance", "", "", "", Rule::fixed},
@@ -20,10 +20,10 @@ constexpr auto fields_of(std::type_identity<RelaxOptions>) {
 static_assert(tells_every_member<RelaxOptions>());
 
 struct Relaxation {
-  bool relaxed = false;            ///< criterion met (trivially without contacts)
-  double max_net_force = 0;        ///< [N]
-  double mean_contact_force = 0;   ///< [N], 0 without contacts
-  std::int64_t passes = 0;         ///< force passes used
+  bool relaxed = false;              ///< criterion met (trivially without contacts)
+  double max_net_force = 0;          ///< [N]
+  double mean_contact_force = 0;     ///< [N], 0 without contacts
+  std::int64_t passes = 0;           ///< force passes used
   double E_before = 0, E_after = 0;  ///< elastic energy at the first and the last of them [J]
 };
 

@@ -18,7 +18,8 @@ ContactSums contact_forces_on(RelaxField& field, std::size_t begin, std::size_t 
   const Tag<double> d;
   using V = hn::Vec<Tag<double>>;
   const V zero = hn::Zero(d);
-  const double *places = field.place.front().data(), *shifts = field.shift.front().data(), *motions = field.w.front().data();
+  const double *places = field.place.front().data(), *shifts = field.shift.front().data(),
+               *motions = field.w.front().data();
   alignas(64) double overlap[kLanes] = {}, overlap2[kLanes] = {}, gx[kLanes], gy[kLanes], gz[kLanes], f2[kLanes];
   ContactSums sums;
   for (std::size_t group = begin; group < end; ++group) {

@@ -19,13 +19,13 @@ struct alignas(64) NearTier {
 
 /// Spheres as the pass sees them. Groups are filled within blocks of kBlockSize spheres, those with most neighbours first.
 struct RelaxField {
-  std::vector<Row> place;         ///< x, y, z, r [m]; the last one is nobody's, far away
-  std::vector<Row> shift;         ///< H n of each image of the list [m]
-  std::vector<Row> w;             ///< of the minimiser; [3] is 1/sqrt(m)
-  std::vector<Row> g;             ///< net force over k sqrt(m); [3] is the square of net force over k [m^2]
-  std::vector<std::uint32_t> sphere;   ///< of each lane; place.size() - 1 where there is none
-  std::vector<std::size_t> first_tier; ///< of each group
-  std::vector<std::uint32_t> tiers;    ///< of each group
+  std::vector<Row> place;               ///< x, y, z, r [m]; the last one is nobody's, far away
+  std::vector<Row> shift;               ///< H n of each image of the list [m]
+  std::vector<Row> w;                   ///< of the minimiser; [3] is 1/sqrt(m)
+  std::vector<Row> g;                   ///< net force over k sqrt(m); [3] is the square of net force over k [m^2]
+  std::vector<std::uint32_t> sphere;    ///< of each lane; place.size() - 1 where there is none
+  std::vector<std::size_t> first_tier;  ///< of each group
+  std::vector<std::uint32_t> tiers;     ///< of each group
   std::vector<NearTier> tier;
 };
 

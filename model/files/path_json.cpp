@@ -120,8 +120,8 @@ void append_segment(const Json& object, const std::string& where, bool both, std
   if (has_cycles && object.contains("extent"))
     throw InvalidInput(fmt::format("{}: has extent and cycles; give one of them", where));
   if (!has_cycles && !object.contains("extent"))
-    throw InvalidInput(fmt::format("{}: misses the key 'extent'; give one of {}, or cycles", where,
-                                   list_of_names<ExtentKind>()));
+    throw InvalidInput(
+        fmt::format("{}: misses the key 'extent'; give one of {}, or cycles", where, list_of_names<ExtentKind>()));
   if (has_cycles && !segment.conditions.empty())
     throw InvalidInput(
         fmt::format("{}.cycles: are of strain; give segments with an extent where rates are free", where));

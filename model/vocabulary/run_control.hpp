@@ -19,8 +19,9 @@ struct Progress {
 
 /// Passed by value into every long computation; the default neither reports nor stops.
 struct RunControl {
-  std::function<void(const Progress&)> report;  ///< called from the computing thread, a few times a second at most; may be empty
-  std::stop_token stop;                         ///< checked at least every 0.1 s; the callee then throws Interrupted
+  std::function<void(const Progress&)>
+      report;            ///< called from the computing thread, a few times a second at most; may be empty
+  std::stop_token stop;  ///< checked at least every 0.1 s; the callee then throws Interrupted
 };
 
 /// Who looks on at a list of jobs. This one sees nothing.
@@ -30,7 +31,9 @@ class Watch {
 
   /// A new list starts: `work` is what each job is expected to do in `unit`, 0 for jobs that are done already. Without a
   /// unit only the fraction that a job reports counts.
-  virtual void begin(const std::vector<double>& work, std::string unit) { static_cast<void>(work), static_cast<void>(unit); }
+  virtual void begin(const std::vector<double>& work, std::string unit) {
+    static_cast<void>(work), static_cast<void>(unit);
+  }
 
   /// What the job with this index in the list reports to, and learns of `stop` from.
   virtual RunControl control(std::size_t job, std::string name, std::stop_token stop) {

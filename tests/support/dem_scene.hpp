@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "dem/element_tests/drive.hpp"
-#include "dem/engine/state.hpp"
 #include "dem/engine/lanes/lane_list.hpp"
 #include "dem/engine/simulation.hpp"
+#include "dem/engine/state.hpp"
 #include "model/vocabulary/path.hpp"
 
 namespace grainlaw::dem::scene {

@@ -17,8 +17,8 @@
 #include <thread>
 
 #include "fit/calibrate.hpp"
-#include "fit/stages/density_fit.hpp"
 #include "fit/staged_laws.hpp"
+#include "fit/stages/density_fit.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/fit_stages.hpp"
 #include "tests/support/synthetic_dataset.hpp"

@@ -117,7 +117,7 @@ inline predict::Prediction predicted_at(const TestRecord& test, const LawParamet
 }
 
 inline predict::PredictionFolder make_prediction(const std::string& name, double nu, const LawParameters<double>& p,
-                                             std::mt19937_64& generator) {
+                                                 std::mt19937_64& generator) {
   predict::PredictionFolder folder;
   folder.name = name;
   folder.dem.emplace();

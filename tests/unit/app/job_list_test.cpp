@@ -61,7 +61,8 @@ TEST(JobList, SharesTheThreads) {
   dem::run_jobs(jobs, 3, quiet.printer, {});
   EXPECT_LE(most, 3);
   // a single job gets all
-  dem::run_jobs({{"only", 1, std::nullopt, [&](int threads, const RunControl&) { given = threads; }}}, 5, quiet.printer, {});
+  dem::run_jobs({{"only", 1, std::nullopt, [&](int threads, const RunControl&) { given = threads; }}}, 5, quiet.printer,
+                {});
   EXPECT_EQ(given, 5);
 }
 
@@ -106,7 +107,8 @@ TEST(JobList, StopsOnRequest) {
   }
   EXPECT_THROW(dem::run_jobs(jobs, 2, quiet.printer, stop.get_token()), Interrupted);
   EXPECT_EQ(finished, 1);
-  EXPECT_THROW(dem::run_jobs(jobs, 2, quiet.printer, stop.get_token()), Interrupted);  // already requested: nothing starts
+  EXPECT_THROW(dem::run_jobs(jobs, 2, quiet.printer, stop.get_token()),
+               Interrupted);  // already requested: nothing starts
   EXPECT_EQ(finished, 1);
 }
 

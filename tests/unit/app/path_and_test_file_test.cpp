@@ -1,12 +1,12 @@
 // PATH and TEST files.
 #include <cmath>
 #include <numbers>
-#include "model/files/path_file.hpp"
-#include "model/files/path_json.hpp"
+#include "dem/files/state_file.hpp"
+#include "dem/runs/dataset_runs.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "dem/runs/test_file.hpp"
-#include "dem/runs/dataset_runs.hpp"
-#include "dem/files/state_file.hpp"
+#include "model/files/path_file.hpp"
+#include "model/files/path_json.hpp"
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -61,7 +61,8 @@ TEST(Examples, AreValidInput) {
   for (const char* name : {"uniaxial-0.695.json", "uniaxial-0.728.json"}) {
     const PathFile path = read_path(quickstart / name);
     // its packings are shared by the predictions and are none of the calibration's
-    EXPECT_EQ(plan(spec, path, dem::new_seeds(spec, path, {}, name), name).front().preparation.keep_unloading, spec.keep);
+    EXPECT_EQ(plan(spec, path, dem::new_seeds(spec, path, {}, name), name).front().preparation.keep_unloading,
+              spec.keep);
   }
 }
 

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "chain/report_input.hpp"
 #include "app/report/series.hpp"
+#include "chain/report_input.hpp"
 #include "fit/calibration_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output.hpp"

@@ -54,7 +54,7 @@ std::vector<TestRecord> rehearsals(const CalibratedLaw& c, double bias, double s
 
 TEST(PredictionError, IsTheBandsHalfWidth) {
   const PredictionError one = prediction_error(law_with_errors(0.002), shear(), {}),
-                               two = prediction_error(law_with_errors(0.004), shear(), {});
+                        two = prediction_error(law_with_errors(0.004), shear(), {});
   EXPECT_EQ(one.rung, Rung::evolution);
   ASSERT_EQ(one.quantities.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -20,9 +20,8 @@ struct Pair {
   double distance() const { return 2.5e-3 - kOverlap; }
   Simulation simulation() const {
     const Eigen::Vector3d x(7e-3, 8e-3, 9e-3);
-    return Simulation(
-        scene::state_of(scene::cubic(kEdge), {{1e-3, x + distance() * n, v}, {1.5e-3, x}}, material), scene::engine_options(),
-        motion);
+    return Simulation(scene::state_of(scene::cubic(kEdge), {{1e-3, x + distance() * n, v}, {1.5e-3, x}}, material),
+                      scene::engine_options(), motion);
   }
 };
 

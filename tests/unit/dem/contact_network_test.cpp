@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "model/vocabulary/error.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

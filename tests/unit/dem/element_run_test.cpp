@@ -9,8 +9,8 @@
 #include <filesystem>
 
 #include "dem/element_tests/energy_watch.hpp"
-#include "dem/statics/relax.hpp"
 #include "dem/files/state_file.hpp"
+#include "dem/statics/relax.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
 
@@ -73,9 +73,10 @@ TEST(ElementTest, D2KeepsTheVolumeAndFollowsItsPath) {
 
 TEST(ElementTest, CornersAddStrainAndCountSegments) {
   const State start = relaxed_packing(60, 0.72);
-  const auto path = path_of(start, {segment(Mode::D2, ExtentKind::eps_dev, 0.06), segment(Mode::ISO, ExtentKind::target_nu, 0.74),
-                                    segment(Mode::ISO, ExtentKind::target_nu, 0.72, true),
-                                    segment(Mode::D2, ExtentKind::eps_dev, 0.06, true)});
+  const auto path =
+      path_of(start, {segment(Mode::D2, ExtentKind::eps_dev, 0.06), segment(Mode::ISO, ExtentKind::target_nu, 0.74),
+                      segment(Mode::ISO, ExtentKind::target_nu, 0.72, true),
+                      segment(Mode::D2, ExtentKind::eps_dev, 0.06, true)});
   for (const Profile profile : {Profile::cosine, Profile::constant}) {
     ElementTestOptions options = fast_options(8);
     options.drive.profile = profile;
@@ -112,7 +113,8 @@ TEST(ElementTest, TheClockAndTheLedgerBeginAtZero) {
   // compression at pressure P: the box does about P dV of work
   const Observation& last = test.rows.back();
   EXPECT_GT(last.W_box, 0);
-  const double balance = last.W_box - (last.E_pot + last.E_kin - test.rows.front().E_pot) - last.D_contact - last.D_background;
+  const double balance =
+      last.W_box - (last.E_pot + last.E_kin - test.rows.front().E_pot) - last.D_contact - last.D_background;
   EXPECT_LE(std::abs(balance), 1e-3 * last.W_box);
   EXPECT_NEAR(last.energy_residual, balance / (last.W_box + last.D_contact + last.D_background), 1e-12);
 }
@@ -164,7 +166,8 @@ TEST(ElementTest, OneSphereHasNoPressure) {
   const ElementTest test = run_element_test(start, path, fast_options(), {});
   for (const Observation& row : test.rows) {
     EXPECT_EQ(row.P_star, 0);
-    EXPECT_TRUE(std::isnan(row.s_dev) && std::isnan(row.s_par) && std::isnan(row.C_star) && std::isnan(row.inertial_number));
+    EXPECT_TRUE(std::isnan(row.s_dev) && std::isnan(row.s_par) && std::isnan(row.C_star) &&
+                std::isnan(row.inertial_number));
     EXPECT_EQ(row.energy_residual, 0);
   }
 }
@@ -251,7 +254,9 @@ TEST(ElementTest, StopsOnRequestAndReportsProgress) {
   control.report = [&](const Progress& progress) { reports.push_back(progress); };
   std::uint64_t steps = 0;
   EXPECT_THROW(run_element_test(start, path, fast_options(), control,
-                                [&](const Simulation&, int, double) { if (++steps == 100) stop.request_stop(); }),
+                                [&](const Simulation&, int, double) {
+                                  if (++steps == 100) stop.request_stop();
+                                }),
                Interrupted);
   EXPECT_EQ(steps, 100u);
   ASSERT_FALSE(reports.empty());

@@ -4,8 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -90,7 +90,7 @@ TEST(Packing, CheckNamesSphereAndQuantity) {
     double value;
   };
   const std::vector<CellEntry> bad_entries{{1, 0, 1e-3},  {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0},
-                                       {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}};
+                                           {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}};
   for (const CellEntry& bad : bad_entries) {
     EXPECT_NE(message([&](Packing& p) { p.H(bad.row, bad.column) = bad.value; }).find("cell"), std::string::npos);
   }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {
@@ -48,8 +48,10 @@ Prepared prepare(const PreparationOptions& options) {
 
 TEST(Preparation, KeepsTheRequestedStatesRelaxedAndInOrder) {
   const Prepared result = prepare(small_options());
-  const std::vector<std::pair<Branch, double>> expected{{Branch::loading, 0.70},   {Branch::loading, 0.74},
-                                                        {Branch::unloading, 0.72}, {Branch::unloading, 0.71},
+  const std::vector<std::pair<Branch, double>> expected{{Branch::loading, 0.70},
+                                                        {Branch::loading, 0.74},
+                                                        {Branch::unloading, 0.72},
+                                                        {Branch::unloading, 0.71},
                                                         {Branch::unloading, 0.69}};
   ASSERT_EQ(result.kept.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "dem/element_tests/preparation.hpp"
-#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/figure.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "dem/element_tests/preparation.hpp"
-#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

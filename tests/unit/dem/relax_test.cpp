@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "dem/engine/lanes/lane_pass.hpp"
-#include "tests/support/dem_reference.hpp"
 #include "model/vocabulary/error.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {
@@ -75,7 +75,8 @@ TEST(Relax, AgreesWithDynamics) {
   Simulation sim = scene::start(disturbed, 0.1);
   scene::advance_at_rest(sim, 40000);
   const ReferenceSums dynamic = forces_at_rest(sim.state()), minimal = forces_at_rest(minimised);
-  ASSERT_LE(max_net_force(dynamic), 1e-6 * mean_contact_force(dynamic, relaxed.material)) << "the dynamics is not at rest yet";
+  ASSERT_LE(max_net_force(dynamic), 1e-6 * mean_contact_force(dynamic, relaxed.material))
+      << "the dynamics is not at rest yet";
   EXPECT_NEAR(dynamic.E_pot / minimal.E_pot, 1, 1e-10);
   EXPECT_NEAR(dynamic.virial.trace() / minimal.virial.trace(), 1, 1e-6);
 }

@@ -132,7 +132,8 @@ TEST(StartSimulation, AContinuedRunHasTheListOfItsLastRebuild) {
   end.H(2, 2) *= 0.98;
   scene::step(whole, end, end);
   ASSERT_EQ(whole.rebuilds(), 1u);
-  const NeighbourList list = scene::list_of(whole), continued = scene::list_of(Simulation(whole.state(), whole.options(), end));
+  const NeighbourList list = scene::list_of(whole),
+                      continued = scene::list_of(Simulation(whole.state(), whole.options(), end));
   EXPECT_EQ(continued.first, list.first);
   EXPECT_EQ(continued.j, list.j);
   EXPECT_EQ(continued.image, list.image);
@@ -155,7 +156,8 @@ TEST(Advance, FreeFlightIsStraight) {
   Eigen::Vector3d difference = (scene::position(sim.state().packing, 0) - expected) / 20e-3;
   difference.array() -= difference.array().round();
   const double quantum = scene::precision_under_test() == Precision::mixed ? 0x1p-32 : 0x1p-52;
-  EXPECT_LE(difference.lpNorm<Eigen::Infinity>(), 1000 * quantum / 2 + scene::rounding(1e-15)) << "half a quantum a step";
+  EXPECT_LE(difference.lpNorm<Eigen::Infinity>(), 1000 * quantum / 2 + scene::rounding(1e-15))
+      << "half a quantum a step";
   EXPECT_EQ(scene::velocity(sim.state().packing, 0), Eigen::Vector3d(3, -2, 1));
 }
 
@@ -166,11 +168,14 @@ TEST(Advance, LostSphereIsNamed) {
   State nowhere = sim.state();
   nowhere.ax[1] = std::numeric_limits<double>::quiet_NaN();
   sim = Simulation(nowhere, sim.options(), scene::at_rest(nowhere));
-  EXPECT_NE(message_of([&] { scene::advance_at_rest(sim, 1); }).find("sphere 31: position or velocity"), std::string::npos);
+  EXPECT_NE(message_of([&] { scene::advance_at_rest(sim, 1); }).find("sphere 31: position or velocity"),
+            std::string::npos);
   state.packing.vy[1] = 0.13 * kBox(1, 1) / sim.dt();
   sim = scene::start(state);
   const std::string message = message_of([&] { scene::advance_at_rest(sim, 1); });
-  EXPECT_TRUE(scene::precision_under_test() == Precision::reference || message.find("sphere 31: crosses") != std::string::npos) << message;
+  EXPECT_TRUE(scene::precision_under_test() == Precision::reference ||
+              message.find("sphere 31: crosses") != std::string::npos)
+      << message;
 }
 
 TEST(Ledger, OpensAtTheCurrentEnergies) {

@@ -10,7 +10,9 @@ namespace {
 
 using testing::refusal;
 
-dem::Spec spec(const std::string& text) { return spec_from_json(parse_json(text, "s.json", JsonSource::user), "s.json"); }
+dem::Spec spec(const std::string& text) {
+  return spec_from_json(parse_json(text, "s.json", JsonSource::user), "s.json");
+}
 std::string spec_refusal(const std::string& text) {
   return refusal([&] { spec(text); });
 }

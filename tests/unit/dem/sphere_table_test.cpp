@@ -39,13 +39,13 @@ class SphereTable : public ::testing::Test {
 
 constexpr const char* kGood = "id,x,y,z,r\n1,0.001,0.002,0.003,0.001\n2,0.005,0.005,0.005,0.0005\n";
 
-#define EXPECT_REFUSED(content, row, what)                                                           \
-  do {                                                                                               \
-    const std::string message = refusal(content);                                                    \
-    EXPECT_NE(message.find(file_.string()), std::string::npos) << message;                           \
-    EXPECT_NE(message.find(row), std::string::npos) << message;                                      \
-    EXPECT_NE(message.find(what), std::string::npos) << message;                                     \
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;                                     \
+#define EXPECT_REFUSED(content, row, what)                                 \
+  do {                                                                     \
+    const std::string message = refusal(content);                          \
+    EXPECT_NE(message.find(file_.string()), std::string::npos) << message; \
+    EXPECT_NE(message.find(row), std::string::npos) << message;            \
+    EXPECT_NE(message.find(what), std::string::npos) << message;           \
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;           \
   } while (false)
 
 TEST_F(SphereTable, ReadsPositionsInMetres) {
@@ -60,8 +60,10 @@ TEST_F(SphereTable, ReadsPositionsInMetres) {
 }
 
 TEST_F(SphereTable, TakesColumnsInAnyOrderWithUnitsSpacesCrlfAndMark) {
-  const State state = read("\xef\xbb\xbf" "r[m], vy[m/s],vx[m/s],vz[m/s],z[m],y[m],x[m],id\r\n"
-                           "0.001 ,\t2,1,3,0.004,0.005,0.006,-9\r\n\r\n");
+  const State state = read(
+      "\xef\xbb\xbf"
+      "r[m], vy[m/s],vx[m/s],vz[m/s],z[m],y[m],x[m],id\r\n"
+      "0.001 ,\t2,1,3,0.004,0.005,0.006,-9\r\n\r\n");
   const Packing& p = state.packing;
   ASSERT_EQ(p.size(), 1u);
   EXPECT_EQ(p.id[0], -9);

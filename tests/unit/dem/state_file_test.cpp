@@ -24,7 +24,8 @@ class StateFile : public ::testing::Test {
  protected:
   StateFile() {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("grainlaw-state-file-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
+    folder_ = fs::temp_directory_path() /
+              ("grainlaw-state-file-" + std::string(info->name()) + "-" + std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directory(folder_);
     file_ = folder_ / "kept.state";
@@ -55,9 +56,20 @@ class StateFile : public ::testing::Test {
 std::vector<double> numbers(const State& s) {
   const Material& m = s.material;
   const Ledger& l = s.ledger;
-  std::vector<double> all{m.density, m.stiffness, m.contact_viscosity, m.background_viscosity, s.time, l.W_box, l.D_contact,
-                          l.D_background, l.E_start, l.E_kin_start, s.sums.box_power, s.sums.contact_power,
-                          s.sums.drag_power, s.sums.E_pot};
+  std::vector<double> all{m.density,
+                          m.stiffness,
+                          m.contact_viscosity,
+                          m.background_viscosity,
+                          s.time,
+                          l.W_box,
+                          l.D_contact,
+                          l.D_background,
+                          l.E_start,
+                          l.E_kin_start,
+                          s.sums.box_power,
+                          s.sums.contact_power,
+                          s.sums.drag_power,
+                          s.sums.E_pot};
   all.insert(all.end(), s.packing.H.data(), s.packing.H.data() + 9);
   all.insert(all.end(), s.ref_H.data(), s.ref_H.data() + 9);
   const Packing& p = s.packing;
@@ -126,9 +138,10 @@ TEST_F(StateFile, NumbersStandInTheDocumentedOrder) {
   write_state(file_, s);
   const Material& m = s.material;
   const Ledger& l = s.ledger;
-  std::vector<double> expected{m.density, m.stiffness, m.contact_viscosity, m.background_viscosity,
-                               s.time, l.W_box, l.D_contact, l.D_background, l.E_start, l.E_kin_start,
-                               s.sums.box_power, s.sums.contact_power, s.sums.E_pot, s.sums.drag_power};
+  std::vector<double> expected{m.density,    m.stiffness,      m.contact_viscosity, m.background_viscosity,
+                               s.time,       l.W_box,          l.D_contact,         l.D_background,
+                               l.E_start,    l.E_kin_start,    s.sums.box_power,    s.sums.contact_power,
+                               s.sums.E_pot, s.sums.drag_power};
   for (const auto* H : {&s.packing.H, &s.ref_H}) {
     for (int i = 0; i < 9; ++i) expected.push_back((*H)(i / 3, i % 3));  // by rows
   }
@@ -171,7 +184,8 @@ TEST_F(StateFile, ATruncatedOrLongerFileIsRefused) {
 std::string with_checksum(std::string content) {
   std::string sum(32, '\0');
   unsigned int length = 0;
-  EVP_Digest(content.data(), content.size(), reinterpret_cast<unsigned char*>(sum.data()), &length, EVP_sha256(), nullptr);
+  EVP_Digest(content.data(), content.size(), reinterpret_cast<unsigned char*>(sum.data()), &length, EVP_sha256(),
+             nullptr);
   return content + sum;
 }
 

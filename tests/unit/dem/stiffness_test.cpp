@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {

@@ -65,7 +65,8 @@ TEST(ThreadTeam, OthersTakeTheBlocksOfALateMember) {
     std::atomic<int> done = 0;
     team.for_each_block(kBlocks, [&](std::size_t block) {
       const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-      while (block == late && done < kBlocks - 1 && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
+      while (block == late && done < kBlocks - 1 && std::chrono::steady_clock::now() < give_up)
+        std::this_thread::yield();
       ++done;
       if (block == late) {
         EXPECT_EQ(done, kBlocks);

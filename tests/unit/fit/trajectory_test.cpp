@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "model/vocabulary/error.hpp"
 #include "model/reduced_law.hpp"
+#include "model/vocabulary/error.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
 namespace grainlaw::fit {
@@ -29,11 +29,12 @@ double largest_error(double max_step, double& fabric_error) {
   const double F_max = p.fabric_max.value(0.70, p.shear_nu_c), beta_F = p.fabric_rate.value(0.70, p.shear_nu_c);
   double error = 0;
   fabric_error = 0;
-  EXPECT_TRUE(integrate(t, p, Rung::evolution, Coupling::single, max_step, [&](std::size_t i, const LawState<double>& y) {
-    const double e = t.rows[i].e * t.direction.de;
-    error = std::max(error, std::abs(y.sigma.dot(t.direction.N) / y.P - saturating(s_max, 0.0, beta_s, e)));
-    fabric_error = std::max(fabric_error, std::abs(y.F.dot(t.direction.N) - saturating(F_max, 0.0, beta_F, e)));
-  }));
+  EXPECT_TRUE(
+      integrate(t, p, Rung::evolution, Coupling::single, max_step, [&](std::size_t i, const LawState<double>& y) {
+        const double e = t.rows[i].e * t.direction.de;
+        error = std::max(error, std::abs(y.sigma.dot(t.direction.N) / y.P - saturating(s_max, 0.0, beta_s, e)));
+        fabric_error = std::max(fabric_error, std::abs(y.F.dot(t.direction.N) - saturating(F_max, 0.0, beta_F, e)));
+      }));
   return error;
 }
 

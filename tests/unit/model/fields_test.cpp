@@ -39,9 +39,12 @@ struct Whole {
 };
 constexpr auto fields_of(std::type_identity<Whole>) {
   using W = Whole;
-  return std::tuple{Field{&W::name, "name"},     Field{&W::part, ""},
-                    Field{&W::colour, "colour"}, Field{&W::end, "end"},
-                    Field{&W::others, "others"}, Field{&W::threads, "threads", "", "", "", Rule::free},
+  return std::tuple{Field{&W::name, "name"},
+                    Field{&W::part, ""},
+                    Field{&W::colour, "colour"},
+                    Field{&W::end, "end"},
+                    Field{&W::others, "others"},
+                    Field{&W::threads, "threads", "", "", "", Rule::free},
                     Field{&W::tolerance, "tolerance", "", "", "", Rule::fixed}};
 }
 static_assert(tells_every_member<Whole>());
@@ -65,9 +68,8 @@ TEST(Fields, BecomeKeysInTheirOrder) {
   whole.part = {std::numeric_limits<double>::quiet_NaN(), true};
   whole.colour = Colour::green;
   whole.others = {{2.5, false}};
-  EXPECT_EQ(fields_to_json(whole).dump(),
-            R"({"name":"none","mass":null,"hollow":true,"colour":"green","end":null,)"
-            R"("others":[{"mass":2.5,"hollow":false}]})");
+  EXPECT_EQ(fields_to_json(whole).dump(), R"({"name":"none","mass":null,"hollow":true,"colour":"green","end":null,)"
+                                          R"("others":[{"mass":2.5,"hollow":false}]})");
   EXPECT_EQ(fields_to_json(whole, true)["tolerance"], 0.5);
 }
 

@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "dem/engine/averages.hpp"
 #include "dem/element_tests/element_run.hpp"
-#include "tests/support/dem_reference.hpp"
+#include "dem/engine/averages.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_contact_statistics.hpp"
 #include "tests/support/dem_families.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/figure.hpp"
 
 namespace grainlaw::dem {

@@ -9,10 +9,10 @@
 #include <algorithm>
 
 #include "dem/element_tests/element_run.hpp"
-#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_compression.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/figure.hpp"
 
 namespace grainlaw::dem {

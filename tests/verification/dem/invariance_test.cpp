@@ -109,7 +109,8 @@ TEST(Invariance, OrderOfTheSpheres) {
   scene::advance_at_rest(b, 100);
   double worst = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    worst = std::max(worst, (scene::velocity(b.state().packing, i) - scene::velocity(a.state().packing, order[i])).norm());
+    worst =
+        std::max(worst, (scene::velocity(b.state().packing, i) - scene::velocity(a.state().packing, order[i])).norm());
   }
   EXPECT_LE(worst, 1e-9 * kSpeed);
 }

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <ostream>
 
-#include "dem/engine/averages.hpp"
 #include "dem/element_tests/drive.hpp"
+#include "dem/engine/averages.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/figure.hpp"
 

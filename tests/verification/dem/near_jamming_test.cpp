@@ -8,8 +8,8 @@
 
 #include <algorithm>
 
-#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_compression.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/figure.hpp"
 
 namespace grainlaw::dem {

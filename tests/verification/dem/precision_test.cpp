@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "dem/engine/averages.hpp"
 #include "dem/element_tests/element_run.hpp"
+#include "dem/engine/averages.hpp"
 #include "dem/engine/lanes/lane_pass.hpp"
 #include "dem/engine/lanes/lane_state.hpp"
-#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_compression.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/dem_state_bits.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/table.hpp"

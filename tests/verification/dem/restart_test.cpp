@@ -107,13 +107,15 @@ TEST_F(Restart, R5EveryStepContinuesToTheSameBits) {
 TEST_F(Restart, R5TheListIsTheInterruptedRuns) {
   Scene scene(Transport::homogeneous, Profile::constant);
   scene.options.engine.skin = 0.5;  // a list that lasts
-  scene.path = resolve({0.75, Branch::unloading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", true), ExtentKind::target_nu, 0.70}}});
+  scene.path = resolve(
+      {0.75, Branch::unloading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", true), ExtentKind::target_nu, 0.70}}});
   int lists = 0, differing = 0;
   double largest_stretch = 0;
   const StepObserver compare = [&](Simulation& sim, int, double) {
     CellMotion still;
     still.H = sim.state().packing.H;
-    const NeighbourList list = scene::list_of(sim), again = scene::list_of(Simulation(sim.state(), sim.options(), still));
+    const NeighbourList list = scene::list_of(sim),
+                        again = scene::list_of(Simulation(sim.state(), sim.options(), still));
     ++lists;
     const bool same = again.first == list.first && again.j == list.j && again.image == list.image;
     differing += same ? 0 : 1;
@@ -141,9 +143,10 @@ TEST_F(Restart, R10AStoppedRunHasSavedItsLastStep) {
     };
     const RunControl control{{}, source.get_token()};
     try {
-      const ElementTest test =
-          saved ? continue_element_test(*saved, scene.path, scene.options, control, stop_at_the_seventh, only_when_stopped)
-                : run_element_test(scene.start, scene.path, scene.options, control, stop_at_the_seventh, only_when_stopped);
+      const ElementTest test = saved ? continue_element_test(*saved, scene.path, scene.options, control,
+                                                             stop_at_the_seventh, only_when_stopped)
+                                     : run_element_test(scene.start, scene.path, scene.options, control,
+                                                        stop_at_the_seventh, only_when_stopped);
       expect_figure("R10.differing_bytes", bytes_of(test.rows, test.end) == bytes_of(whole.rows, whole.end) ? 0 : 1, 0);
       return;
     } catch (const Interrupted&) {

@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "dem/engine/averages.hpp"
 #include "dem/element_tests/preparation.hpp"
+#include "dem/engine/averages.hpp"
 #include "tests/support/dem_state_bits.hpp"
 #include "tests/support/figure.hpp"
 

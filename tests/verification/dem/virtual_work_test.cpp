@@ -7,9 +7,9 @@
 #include <algorithm>
 
 #include "dem/engine/averages.hpp"
-#include "tests/support/dem_reference.hpp"
 #include "dem/statics/relax.hpp"
 #include "tests/support/dem_families.hpp"
+#include "tests/support/dem_reference.hpp"
 #include "tests/support/figure.hpp"
 
 namespace grainlaw::dem {
@@ -152,12 +152,14 @@ TEST_P(VirtualWork, MeasuredStressEqualsThePlainReferenceAfterSteps) {
   Draw draw(31);
   State state = random_overlaps();
   scene::random_velocities(state.packing, 0.5, draw);
-  const StraightSegment segment = scene::segment_of(direction_of(Mode::D3).tensor, 0.01, volume_fraction(state.packing));
+  const StraightSegment segment =
+      scene::segment_of(direction_of(Mode::D3).tensor, 0.01, volume_fraction(state.packing));
   const Drive drive = make_drive(segment, {500, Profile::constant, Transport::homogeneous}, state.packing.H);
   EngineOptions options = scene::engine_options();
   options.refuse_deep_overlaps = false;
   Simulation sim(state, options, motion_at(drive, 0));
-  for (int k = 0; k < 5; ++k) scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt()), motion_at(drive, (k + 1) * sim.dt()));
+  for (int k = 0; k < 5; ++k)
+    scene::step(sim, motion_at(drive, (k + 0.5) * sim.dt()), motion_at(drive, (k + 1) * sim.dt()));
   const CellMotion motion = motion_at(drive, 5 * sim.dt());
   const Observation seen = observe(sim, motion, Deviator<double>::Zero());
   const Packing& p = sim.state().packing;

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "model/vocabulary/error.hpp"
-#include "predict/studies/walker.hpp"
 #include "predict/predict.hpp"
+#include "predict/studies/walker.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"

@@ -9,8 +9,8 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
-#include "predict/solvers/cvode.hpp"
 #include "predict/predict.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"

@@ -10,8 +10,8 @@
 #include <array>
 #include <cmath>
 
-#include "predict/solvers/cvode.hpp"
 #include "predict/segment_law.hpp"
+#include "predict/solvers/cvode.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_path.hpp"
 #include "tests/support/table.hpp"
