@@ -26,8 +26,8 @@ std::vector<const Series*> series_of(const Panel& panel, const std::string& labe
 }
 
 /// The scene with a uniaxial cycle and D2 from the loading branch at .70.
-ReportInput scene_of_modes() {
-  ReportInput input = test::report_scene();
+chain::ReportInput scene_of_modes() {
+  chain::ReportInput input = test::report_scene();
   std::mt19937_64 generator(3);
   TestRecord cycle = test::make_test("UNI-cycle", 1, 0.64,
                                      {test::segment_of(Mode::UNI, ExtentKind::target_nu, 0.82),
@@ -43,7 +43,7 @@ ReportInput scene_of_modes() {
 }
 
 TEST(ReportModes, DecompressionGoesOnInTimeFromTheCompressionOfItsPacking) {
-  const ReportInput input = scene_of_modes();
+  const chain::ReportInput input = scene_of_modes();
   const Panel time = panel_of(modes_figure(input), "Fig. 1");
   const auto isotropic = series_of(time, "ISO");
   ASSERT_EQ(isotropic.size(), 4U) << "two packings, two branches";
@@ -59,7 +59,7 @@ TEST(ReportModes, DecompressionGoesOnInTimeFromTheCompressionOfItsPacking) {
 }
 
 TEST(ReportModes, BranchesAreToldApart) {
-  const ReportInput input = scene_of_modes();
+  const chain::ReportInput input = scene_of_modes();
   const Figure figure = modes_figure(input);
   for (const char* title : {"Figs. 4, 6", "Fig. 7"}) {
     const Panel panel = panel_of(figure, title);
@@ -80,7 +80,7 @@ TEST(ReportModes, BranchesAreToldApart) {
 }
 
 TEST(ReportModes, ScaledPressureIsThatOfEquation15) {
-  ReportInput input = scene_of_modes();
+  chain::ReportInput input = scene_of_modes();
   fit::Description uniaxial{"UNI", {}};  // as calibration.json has it
   fit::Stage pressure;
   pressure.name = "pressure";

@@ -51,7 +51,7 @@ class ReportFolder : public ::testing::Test {
     fit::write_calibration(dir_ / "calibration.json", scene.calibration, {}, {}, {{"version", "0.1.0"}});
     for (predict::PredictionFolder& prediction : scene.predictions) {
       const fs::path folder = dir_ / "predictions" / prediction.name;
-      prediction.dem = write_tests(folder / "dem", report::dem_records(prediction));
+      prediction.dem = write_tests(folder / "dem", chain::dem_records(prediction));
       predict::write_prediction(folder, prediction);
     }
   }
