@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -71,11 +72,26 @@ struct Law {
   }
 };
 
+/// `curve.prediction` by `predicted`; false, with an entry in the failures, where the law does not converge: one rung must
+/// not take the others with it.
+bool add_curve(predict::PredictedCurve curve, const std::function<predict::Prediction()>& predicted,
+               predict::PredictionFolder& content) {
+  try {
+    curve.prediction = predicted();
+  } catch (const NotConverged& error) {
+    content.failures.push_back({curve.model, curve.initial, curve.seed, error.what()});
+    return false;
+  }
+  content.curves.push_back(std::move(curve));
+  return true;
+}
+
 /// Curves at equal steps, from the law's own start.
 void add_free_curves(const Law& law, predict::PredictionFolder& content) {
   for (const Rung model : law.rungs) {
-    content.curves.push_back(
-        {model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), law.at_equal_steps(model)});
+    add_curve(
+        {model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), {}},
+        [&] { return law.at_equal_steps(model); }, content);
   }
 }
 
@@ -88,16 +104,22 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
       for (const Initial initial : initials_of(input)) {
         const auto start = initial == Initial::law ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
                                                    : predict::state_from_row(test.record.rows.front());
-        predict::PredictedCurve curve{model, initial, seed,
-                                      fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
-                                      law.along(model, initial, start, points)};
-        content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
-        content.curves.push_back(std::move(curve));
+        const bool added = add_curve(
+            {model, initial, seed, fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed), {}},
+            [&] { return law.along(model, initial, start, points); }, content);
+        if (added)
+          content.comparisons.push_back(
+              {model, initial, seed, predict::compare(content.curves.back().prediction, test.record)});
       }
     }
   }
   for (const predict::CurveComparison& mean : predict::mean_over_seeds(content.comparisons))
     content.comparisons.push_back(mean);
+}
+
+/// Throws NotConverged with the first failure where no curve is left.
+void require_a_curve(const predict::PredictionFolder& content) {
+  if (content.curves.empty() && !content.failures.empty()) throw NotConverged(content.failures.front().error);
 }
 
 /// Which rung the path needs, and what each richer one changes on the curves from the law's start.
@@ -123,12 +145,29 @@ std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const Prediction
               input.path_name);
 }
 
-Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& folder,
+/// What `work` returns; folders that it leaves empty when it throws are removed, `inner` before `outer`.
+template <class Work>
+auto without_empty_folders(const fs::path& inner, const fs::path& outer, const Work& work) {
+  try {
+    return work();
+  } catch (...) {
+    std::error_code not_empty;  // then it stays
+    fs::remove(inner, not_empty);
+    fs::remove(outer, not_empty);
+    throw;
+  }
+}
+
+Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& output,
                   const Execution& execution) {
-  make_output_folder(runs.store);
-  dem::RunCounts counts;
-  return dem::run_planned(planned_runs(runs, input), Json(dem::spec_to_json(runs.spec)), folder,
-                          dem::RunStore(runs.store, "runs"), execution, counts);
+  return without_empty_folders(output / "dem", output, [&] {
+    make_output_folder(output);
+    const fs::path folder = make_subfolder(output, "dem");
+    make_output_folder(runs.store);
+    dem::RunCounts counts;
+    return dem::run_planned(planned_runs(runs, input), Json(dem::spec_to_json(runs.spec)), folder,
+                            dem::RunStore(runs.store, "runs"), execution, counts);
+  });
 }
 
 void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& content, Watch& watch) {
@@ -138,6 +177,10 @@ void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& con
     for (const std::string& warning : curve.prediction.warnings) {
       if (warned.insert(warning).second) watch.log("warning: " + warning);
     }
+  }
+  for (const predict::FailedCurve& failed : content.failures) {
+    const std::string warning = fmt::format("{} is left out: {}", to_string(failed.model), failed.error);
+    if (warned.insert(warning).second) watch.log("warning: " + warning);
   }
 }
 
@@ -182,21 +225,26 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   predict::state_from_law(input.law.parameters, path.nu);    // refuses a start below jamming before anything is written
   if (input.new_runs) planned_runs(*input.new_runs, input);  // likewise what cannot be run
 
-  make_output_folder(output);
   predict::PredictionFolder content;
   content.name = output.filename().string();
   content.path = path;
   content.parameters = input.parameters;
-  if (input.new_runs) content.dem = make_runs(*input.new_runs, input, make_subfolder(output, "dem"), execution);
+  content.bands = decides ? "none: the law decides the strain" : available_bands(input.law);
+  // all that can fail comes before the first file
+  if (input.initial != Initial::measured) add_free_curves(law, content);
+  require_a_curve(content);
+  if (input.finished_runs) content.dem = input.finished_runs->dataset;
+  if (input.new_runs) content.dem = make_runs(*input.new_runs, input, output, execution);
+  if (content.dem) add_compared_curves(law, input, content);
+  if (!input.new_runs) require_a_curve(content);  // runs that were made stay, with what became of the law
+  add_advice(law, content);
+  make_output_folder(output);
   if (input.finished_runs)
     content.dem = adopt(input.finished_runs->dataset, input.finished_runs->folder, make_subfolder(output, "dem"));
-  if (input.initial != Initial::measured) add_free_curves(law, content);
-  if (content.dem) add_compared_curves(law, input, content);
-  add_advice(law, content);
-  content.bands = decides ? "none: the law decides the strain" : available_bands(input.law);
   content.provenance = Json(provenance(execution));
   predict::write_prediction(output, content);
   log_warnings(input.law, content, execution.watch);
+  require_a_curve(content);
   return content;
 }
 

@@ -147,6 +147,7 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
   document["rung"] = rung_to_json(content);
   document["bands"] = content.bands;
   document["curves"] = curves;
+  document["failures"] = fields_to_json(content.failures);
   document["provenance"] = OrderedJson(content.provenance);
   write_json(folder / "prediction.json", document);
 }
@@ -163,6 +164,7 @@ PredictionFolder read_prediction(const fs::path& folder) {
     read_rung(document.at("rung"), content);
     content.bands = document.at("bands");
     for (const Json& curve : document.at("curves")) content.curves.push_back(curve_from_json(curve, folder));
+    read_fields(document.at("failures"), content.failures);
     if (!document.at("dem").is_null()) {
       content.dem = read_dataset(folder / "dem");
       file = folder / "comparison.json";

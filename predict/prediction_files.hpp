@@ -58,6 +58,20 @@ constexpr auto fields_of(std::type_identity<RungChange>) {
 }
 static_assert(tells_every_member<RungChange>());
 
+/// A curve that there is not: the law did not converge on it.
+struct FailedCurve {
+  Rung model = Rung::evolution;
+  Initial initial = Initial::law;
+  std::optional<std::uint64_t> seed;  ///< of the DEM run at whose rows it was wanted; none: equal steps
+  std::string error;                  ///< one line
+};
+constexpr auto fields_of(std::type_identity<FailedCurve>) {
+  using C = FailedCurve;
+  return std::tuple{Field{&C::model, "model"}, Field{&C::initial, "initial"}, Field{&C::seed, "seed"},
+                    Field{&C::error, "error"}};
+}
+static_assert(tells_every_member<FailedCurve>());
+
 struct PredictionFolder {
   std::string name;  ///< last part of the folder's path
   Path path;
@@ -65,6 +79,7 @@ struct PredictionFolder {
   std::vector<RungChange> changes;  ///< none where the law decides the strain: no two rows are at the same strain
   std::string bands;                ///< one line: which there are, or why there are none
   std::vector<PredictedCurve> curves;
+  std::vector<FailedCurve> failures;
   std::optional<Dataset> dem;  ///< the runs in dem/
   std::vector<CurveComparison> comparisons;
   Json parameters;  ///< file, sha256, dataset_digest of the parameters used
