@@ -1,7 +1,9 @@
 #include "chain/prediction.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <functional>
 #include <set>
 #include <utility>
@@ -127,9 +129,16 @@ void add_advice(const Law& law, predict::PredictionFolder& content) {
   // where the law decides where the path leads, two rungs have no rows at the same strain
   if (law_decides(law.path)) {
     content.needed = {Rung::evolution, "the law decides the strain"};
+    content.recommended = {law.rungs.back(), false, "the richest; where the law decides the strain none is rehearsed"};
     return;
   }
   content.needed = predict::rung_needed(law.calibrated.parameters, law.segments);
+  std::vector<Rung> rungs = law.rungs;
+  std::erase_if(rungs, [&](Rung rung) {
+    return std::ranges::find(content.curves, rung, &predict::PredictedCurve::model) == content.curves.end();
+  });
+  if (rungs.empty()) rungs = law.rungs;  // all failed
+  content.recommended = predict::recommended_rung(law.calibrated.rehearsals, law.segments, rungs, content.needed);
   const predict::PredictedCurve* cheaper = nullptr;
   for (const predict::PredictedCurve& curve : content.curves) {
     if (curve.seed) continue;
@@ -137,6 +146,46 @@ void add_advice(const Law& law, predict::PredictionFolder& content) {
       content.changes.push_back(
           {cheaper->model, curve.model, predict::difference(cheaper->prediction, curve.prediction)});
     cheaper = &curve;
+  }
+}
+
+/// What rehearsals say of the rungs along the path, and where it goes beyond them.
+void add_rehearsals(const Law& law, predict::PredictionFolder& content) {
+  const Spokesmen spokesmen = spokesmen_for(law.segments, law.calibrated.rehearsals);
+  if (law_decides(law.path) || spokesmen.rehearsals.empty()) return;
+  const double m = static_cast<double>(spokesmen.rehearsals.size());
+  predict::PathRehearsals& said = content.rehearsals.emplace();
+  said.kind = spokesmen.kind;
+  said.paths = static_cast<int>(spokesmen.rehearsals.size());
+  said.of_kind = spokesmen.of_kind;
+  said.outside = ways_outside(traits_of(law.segments), spokesmen);
+  said.whole_curve_probability = m / (m + 1);
+  for (const Rung rung : law.rungs) {
+    const auto of = [&](Rehearsed quantity) {
+      predict::RehearsedError said_of{law_error(spokesmen, rung, quantity), 0};
+      double widest = 0;
+      for (const predict::PredictedCurve& curve : content.curves) {
+        for (const predict::PredictedRow& row : curve.prediction.rows)
+          widest = std::max(widest, error_units(law.calibrated.parameters, row.nu).of(quantity));
+      }
+      said_of.whole_curve = widest * said_of.error.largest;
+      return said_of;
+    };
+    said.models.push_back({rung, of(Rehearsed::P_star), of(Rehearsed::s_par), of(Rehearsed::F_par)});
+  }
+  if (!said.outside.empty()) {
+    content.warnings.push_back(fmt::format("outside rehearsals: {}; how far the law is off there is not known",
+                                           fmt::join(said.outside, ", ")));
+  }
+}
+
+/// What the law does not know of a path, whichever rung.
+void add_path_warnings(predict::PredictionFolder& content) {
+  if (content.path.branch != Branch::unloading) {
+    content.warnings.push_back(fmt::format(
+        "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "
+        "preparation, are those of that branch",
+        to_string(content.path.branch)));
   }
 }
 
@@ -173,6 +222,7 @@ Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::p
 void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& content, Watch& watch) {
   std::set<std::string> warned;
   if (!law.converged) watch.log("warning: the calibration did not converge");
+  for (const std::string& warning : content.warnings) watch.log("warning: " + warning);
   for (const predict::PredictedCurve& curve : content.curves) {
     for (const std::string& warning : curve.prediction.warnings) {
       if (warned.insert(warning).second) watch.log("warning: " + warning);
@@ -238,6 +288,8 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   if (content.dem) add_compared_curves(law, input, content);
   if (!input.new_runs) require_a_curve(content);  // runs that were made stay, with what became of the law
   add_advice(law, content);
+  add_rehearsals(law, content);
+  add_path_warnings(content);
   make_output_folder(output);
   if (input.finished_runs)
     content.dem = adopt(input.finished_runs->dataset, input.finished_runs->folder, make_subfolder(output, "dem"));

@@ -51,6 +51,7 @@ struct PackingScatter {
 struct ValidRange {
   double nu_min = 0, nu_max = 1;                    ///< volume fraction of the rows that entered [-]
   double eps_dev_max = 1e300, eps_vol_max = 1e300;  ///< largest |strain| from the start of a test [-]
+  double shear_path_max = 1e300;                    ///< longest shear path of a test [-]
 };
 
 struct CalibratedLaw {
@@ -60,7 +61,7 @@ struct CalibratedLaw {
   Eigen::MatrixXd covariance;  ///< kParameterCount square, zero where there is no error; its degrees of freedom are the
                                ///< estimates'
   PackingScatter scatter;      ///< between runs of one path on different packings
-  ValidRange range{0, 0, 0, 0};       ///< of the rows that entered
+  ValidRange range{0, 0, 0, 0, 0};    ///< of the rows that entered
   bool converged = false;             ///< all stages of the fit
   std::string dataset_digest;         ///< of the data set that was fitted; may be empty
   std::vector<Rehearsal> rehearsals;  ///< paths that no fit saw, each with how far the law is off; may be none

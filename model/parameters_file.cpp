@@ -140,7 +140,8 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
   document["scatter"] = scatter_to_json(law.scatter);
   document["ranges"] = {{"nu", {law.range.nu_min, law.range.nu_max}},
                         {"eps_dev", {0.0, law.range.eps_dev_max}},
-                        {"eps_vol", {0.0, law.range.eps_vol_max}}};
+                        {"eps_vol", {0.0, law.range.eps_vol_max}},
+                        {"shear_path", {0.0, law.range.shear_path_max}}};
   if (!law.rehearsals.empty()) document["rehearsals"] = rehearsals_to_json(law.rehearsals);
   if (!law.dataset_digest.empty()) document["dataset_digest"] = law.dataset_digest;
   if (!parameters.provenance.is_null()) document["provenance"] = OrderedJson(parameters.provenance);
@@ -192,6 +193,9 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   law.range.nu_max = ranges["nu"][1];
   law.range.eps_dev_max = ranges["eps_dev"][1];
   law.range.eps_vol_max = ranges["eps_vol"][1];
+  // older files do not say it: their tests sheared one way
+  law.range.shear_path_max =
+      ranges.contains("shear_path") ? ranges["shear_path"][1].get<double>() : law.range.eps_dev_max;
   if (document.contains("rehearsals")) law.rehearsals = rehearsals_from_json(document["rehearsals"], name);
   law.dataset_digest = document.value("dataset_digest", "");
   result.provenance = document.value("provenance", Json());

@@ -6,6 +6,7 @@
 
 #include "model/files/output.hpp"
 #include "model/files/series_csv.hpp"
+#include "predict/rehearse.hpp"
 #include "tests/support/law_path.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -88,6 +89,37 @@ TEST_F(PathPrediction, FailsWhereEveryRungFailsAndLeavesNoFolder) {
     EXPECT_THROW(predict_path(failing, out(), {}), NotConverged);
     EXPECT_FALSE(std::filesystem::exists(out()));
   }
+}
+
+TEST_F(PathPrediction, WarnsOfABranchThatTheLawDoesNotKnow) {
+  PredictionInput loading = input({});
+  EXPECT_TRUE(predict_path(loading, out(), {}).warnings.empty());
+  loading.path.path.branch = Branch::loading;
+  const auto warnings = predict_path(loading, out(), {}).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with("initial.branch \"loading\"")) << warnings[0];
+}
+
+TEST_F(PathPrediction, LabelsAPathOutsideRehearsals) {
+  PredictionInput rehearsed = input({});
+  const Path other{0.74, Branch::unloading, {leg_to(Mode::UNI, 0.78)}};
+  predict::RehearsalRuns runs_of_other{"other", {runs(other).dataset.tests[0].record}, false};
+  std::vector<std::string> failures;
+  rehearsed.law.rehearsals = {
+      predict::rehearsal_of(rehearsed.law, {Rung::reduced, Rung::evolution}, runs_of_other, {}, failures)};
+  EXPECT_TRUE(failures.empty());
+  predict_path(rehearsed, out(), {});
+  const predict::PredictionFolder read = predict::read_prediction(out());
+  ASSERT_TRUE(read.rehearsals);
+  EXPECT_EQ(read.rehearsals->paths, 1);
+  EXPECT_EQ(read.rehearsals->whole_curve_probability, 0.5);
+  ASSERT_EQ(read.rehearsals->outside.size(), 1u) << "the density; the strain is shorter";
+  EXPECT_TRUE(read.warnings.at(0).starts_with("outside rehearsals: nu down to 0.72 (rehearsed: 0.74)"));
+  // the runs follow evolution exactly, so it is best; memory was not rehearsed
+  EXPECT_LT(rehearsed.law.rehearsals[0].rungs[1].s_par.square, 1e-12);
+  EXPECT_GT(rehearsed.law.rehearsals[0].rungs[0].s_par.square, 1e-6);
+  rehearsed.model = Rung::evolution;
+  EXPECT_TRUE(predict_path(rehearsed, out(), {}).recommended.rehearsed);
 }
 
 TEST_F(PathPrediction, LeavesNoFolderAfterARefusal) {

@@ -96,6 +96,35 @@ TEST(Bands, AMeasuredStartHasNoError) {
   }
 }
 
+TEST(Bands, RehearsalsAddTheLawsOwnError) {
+  const double p0 = published_parameters().isotropic.pressure.p0, error = 0.01 * p0;
+  CalibratedLaw law = with_errors({"pressure.p0"}, Eigen::MatrixXd::Constant(1, 1, error * error), 2);
+  law.scatter = {3, 22, 1e-3, 0.02, 0.01};
+  for (const double nu : {0.70, 0.71}) {
+    Rehearsal& r = law.rehearsals.emplace_back();
+    r.path = {nu, Branch::unloading, {leg(Mode::D2, 0.2)}};
+    r.rungs = {{Rung::reduced, {90, 1e-6, 0, 2e-3}, {90, 0.0049, 0, 0.1}, {90, 0.01, 0, 0.2}}};
+  }
+  const ErrorUnits w = error_units(law.parameters, 0.74);
+  for (const PredictedRow& row : banded(law).rows) {
+    // P: g.V g with 2 degrees of freedom, w^2 tau^2 with as many as there are paths, 2 as well
+    const double variance = std::pow(0.01 * row.state.P, 2) + std::pow(1e-3 * w.B, 2);
+    EXPECT_NEAR(row.mean.P, student_95(2) * std::sqrt(variance), 1e-7 * row.state.P);
+    EXPECT_NEAR(row.mean.s_par, student_95(2) * 0.07 * w.s_max, 1e-9);
+    EXPECT_NEAR(row.mean.F_dev, student_95(2) * 0.1 * w.F_max, 1e-9);
+    EXPECT_NEAR(row.single.F_par, std::hypot(student_95(2) * 0.1 * w.F_max, student_95(22) * 0.01), 1e-9);
+  }
+}
+
+TEST(Bands, DegreesOfFreedomAreWeightedByShares) {
+  const Variance sum = sum_of({3, 2}, {1, 4});
+  EXPECT_DOUBLE_EQ(sum.value, 4);
+  EXPECT_DOUBLE_EQ(sum.degrees_of_freedom, 4 / (3.0 / 2 + 1.0 / 4));
+  EXPECT_EQ(sum_of({3, 2}, {0, 1}).degrees_of_freedom, 2) << "what is nothing does not count";
+  EXPECT_EQ(sum_of({0, 2}, {3, 1}).degrees_of_freedom, 1);
+  EXPECT_TRUE(std::isnan(sum_of({std::nan(""), 2}, {3, 1}).value));
+}
+
 TEST(Bands, AreNoneWithoutErrors) {
   for (const PredictedRow& row : banded(with_errors({}, Eigen::MatrixXd(0, 0), 2)).rows) {
     EXPECT_TRUE(std::isnan(row.mean.P));
