@@ -189,6 +189,14 @@ void add_path_warnings(predict::PredictionFolder& content) {
   }
 }
 
+/// Which bands there are: a path does not speak for itself, so one that alone was rehearsed has none of the law's own error.
+std::string bands_along(const Law& law) {
+  if (law_decides(law.path)) return "none: the law decides the strain";
+  CalibratedLaw known = law.calibrated;
+  if (spokesmen_for(law.segments, known.rehearsals).rehearsals.empty()) known.rehearsals.clear();
+  return available_bands(known);
+}
+
 std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const PredictionInput& input) {
   return plan(runs.spec, input.path, dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name),
               input.path_name);
@@ -279,7 +287,7 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   content.name = output.filename().string();
   content.path = path;
   content.parameters = input.parameters;
-  content.bands = decides ? "none: the law decides the strain" : available_bands(input.law);
+  content.bands = bands_along(law);
   // all that can fail comes before the first file
   if (input.initial != Initial::measured) add_free_curves(law, content);
   require_a_curve(content);

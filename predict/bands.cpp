@@ -34,6 +34,12 @@ Variance sum_of(const Variance& a, const Variance& b) {
   return {a.value + b.value, (a.value + b.value) / (a.value / a.degrees_of_freedom + b.value / b.degrees_of_freedom)};
 }
 
+Variance widened(const Variance& law, double own, double m) {
+  if (!(own > 0)) return law;
+  const Variance sum = sum_of(law, {own, m});
+  return {sum.value, std::min(m, sum.degrees_of_freedom)};
+}
+
 BandMaker::BandMaker(const CalibratedLaw& law) : law_(law) {
   const std::vector<std::size_t> parameters = uncertain_parameters(law);
   covariance_ = law.covariance(parameters, parameters);
@@ -79,8 +85,7 @@ void add_bands(const CalibratedLaw& law, const std::vector<StraightSegment>& pat
     for (const Banded& banded : kBanded) {
       const LawError& error = errors[static_cast<std::size_t>(banded.error)];
       Variance variance = bands.of_law(prediction.slopes[i], banded.slope);
-      if (error.degrees_of_freedom > 0)
-        variance = sum_of(variance, {std::pow(units.of(banded.error) * error.tau, 2), error.degrees_of_freedom});
+      variance = widened(variance, std::pow(units.of(banded.error) * error.tau, 2), error.degrees_of_freedom);
       row.mean.*banded.band = half_width(variance);
       row.single.*banded.band = std::hypot(row.mean.*banded.band, of_scatter * bands.scatter(row.nu, banded.error));
     }

@@ -16,6 +16,11 @@ struct Variance {
 /// The sum, by weighted degrees of freedom: 1/n = sum_k w_k/n_k / sum_k w_k, w_k the values.
 Variance sum_of(const Variance& a, const Variance& b);
 
+/// `law`, the variance that parameters make, with `own`, that of the law's own error from m rehearsals, where that is
+/// positive. The sum then has m degrees of freedom at most, however well `law` is known: it is what was measured on m paths,
+/// and `own` the part of it that is left.
+Variance widened(const Variance& law, double own, double m);
+
 /// What the law knows of its errors, as variances of a row.
 class BandMaker {
  public:

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 std::string advice_text(const predict::PredictionFolder& content) {
   std::string text = fmt::format("needs     {}: {}\n", to_string(content.needed.rung), content.needed.why) +
-                     fmt::format("best      {}: {}\n", to_string(content.recommended.rung), content.recommended.why);
+                     fmt::format("use       {}: {}\n", to_string(content.recommended.rung), content.recommended.why);
   for (const predict::RungChange& change : content.changes) {
     const predict::RungDifference& d = change.difference;
     text +=
@@ -156,7 +156,7 @@ std::string text_of(const predict::PredictionFolder& content, const fs::path& ou
     text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}{}\n",
                         to_string(curve.model), to_string(curve.initial), end.nu, end.state.P, end.s_par, end.F_par,
                         curve.prediction.unjammed ? "  (unjammed)" : "",
-                        curve.model == content.recommended.rung ? "  (best)" : "");
+                        curve.model == content.recommended.rung ? "  (recommended)" : "");
     text += bands_text(end);
   }
   for (const predict::FailedCurve& failed : content.failures) {

@@ -33,7 +33,7 @@ BandCoverage coverage_of(const predict::RehearsedRows& rows, Rehearsed quantity,
     const double n = static_cast<double>(value.differences.size()), own = t * std::sqrt(value.mean_variance);
     const predict::Variance known{value.variance, value.degrees_of_freedom};
     const double without = half(known), d = value.mean_difference(), w = value.weight,
-                 band = half(predict::sum_of(known, {std::pow(w * error.tau, 2), error.degrees_of_freedom}));
+                 band = half(predict::widened(known, std::pow(w * error.tau, 2), error.degrees_of_freedom));
     ++coverage.rows;
     within += std::abs(d) <= std::hypot(band, own);
     within_without += std::abs(d) <= std::hypot(without, own);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "model/student.hpp"
 #include "tests/support/law_path.hpp"
@@ -114,6 +115,39 @@ TEST(Bands, RehearsalsAddTheLawsOwnError) {
     EXPECT_NEAR(row.mean.F_dev, student_95(2) * 0.1 * w.F_max, 1e-9);
     EXPECT_NEAR(row.single.F_par, std::hypot(student_95(2) * 0.1 * w.F_max, student_95(22) * 0.01), 1e-9);
   }
+}
+
+TEST(Bands, WithTheLawsOwnErrorHoldWhatTheyPromise) {
+  // paths off by normal numbers of variance tau^2 + known, tau = 1: the band made of m of them holds another one in 95 %
+  std::mt19937_64 engine(5);
+  for (const int m : {3, 4, 8, 16}) {
+    for (const double known : {0.0, 0.25, 1.0, 4.0}) {
+      std::normal_distribution<double> off(0, std::sqrt(1 + known));
+      std::vector<Rehearsal> paths(static_cast<std::size_t>(m));
+      for (Rehearsal& path : paths) path.rungs = {{Rung::memory, {}, {}, {}}};
+      Spokesmen spokesmen;
+      for (const Rehearsal& path : paths) spokesmen.rehearsals.push_back(&path);
+      constexpr int kPaths = 20000;
+      int within = 0;
+      for (int i = 0; i < kPaths; ++i) {
+        for (Rehearsal& path : paths) path.rungs[0].s_par = {100, std::pow(off(engine), 2), known, 0};
+        const LawError error = law_error(spokesmen, Rung::memory, Rehearsed::s_par);
+        const Variance variance = widened({known}, error.tau * error.tau, error.degrees_of_freedom);
+        within += std::abs(off(engine)) <= student_95(variance.degrees_of_freedom) * std::sqrt(variance.value);
+      }
+      const double share = static_cast<double>(within) / kPaths;
+      EXPECT_GE(share, 0.93) << m << " paths, known " << known;
+      EXPECT_LE(share, 0.97) << m << " paths, known " << known;
+    }
+  }
+}
+
+TEST(Bands, TheLawsOwnErrorHasNoMoreDegreesOfFreedomThanPaths) {
+  EXPECT_EQ(widened({1, 50}, 3, 4).degrees_of_freedom, 4);
+  EXPECT_DOUBLE_EQ(widened({3, 2}, 1, 40).degrees_of_freedom, 4 / (3.0 / 2 + 1.0 / 40))
+      << "parameters may be known worse";
+  EXPECT_EQ(widened({3, 2}, 0, 40).degrees_of_freedom, 2) << "no error of its own was seen";
+  EXPECT_EQ(widened({3, 2}, std::nan(""), 0).value, 3) << "nothing was rehearsed";
 }
 
 TEST(Bands, DegreesOfFreedomAreWeightedByShares) {
