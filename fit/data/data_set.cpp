@@ -122,6 +122,14 @@ class CheckedRow {
 /// Columns that are undefined where that is allowed are not judged; strain, nu, stress, P_star and fabric must be finite.
 void check_rows(const TestRecord& test) {
   const std::vector<StraightSegment> path = resolve(test.path);
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    if (!path[k].spin.isZero(0)) {
+      throw InvalidInput(
+          fmt::format("test {}: segments[{}] spins, and the fit's laws know no rotation; give the test another role "
+                      "than calibration, its strain as a rate_tensor, or predict it",
+                      test.name, k));
+    }
+  }
   const Deviator<double> N = shear_direction(path);
   for (std::size_t i = 0; i < test.rows.size(); ++i) CheckedRow(test, i).check(N, path);
 }
