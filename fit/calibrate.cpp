@@ -64,8 +64,11 @@ StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibra
   return memory_stage(trajectories, options);
 }
 
-ValidRange range_of(const std::vector<Trajectory>& trajectories) {
-  ValidRange range{1, 0, 0, 0};
+ValidRange range_of(const std::vector<Trajectory>& trajectories, const DataSet& data) {
+  ValidRange range{1, 0, 0, 0, 0};
+  for (const TestRecord* test : data.all_used()) {
+    for (const Observation& row : test->rows) range.shear_path_max = std::max(range.shear_path_max, row.shear_path);
+  }
   for (const Trajectory& t : trajectories) {
     if (t.rows.empty()) continue;
     const double e = t.rows.back().e;
@@ -99,7 +102,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
   calibration.law.covariance = calibration.errors.covariance();
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
-  calibration.law.range = range_of(trajectories);
+  calibration.law.range = range_of(trajectories, data);
   calibration.law.converged = all_converged(calibration);
   return calibration;
 }

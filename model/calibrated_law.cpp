@@ -88,11 +88,15 @@ std::vector<std::size_t> uncertain_parameters(const CalibratedLaw& law) {
 }
 
 std::string available_bands(const CalibratedLaw& law) {
+  const std::string of_law = law.rehearsals.empty()
+                                 ? "; the law's own error is not in them: no other path was rehearsed"
+                                 : "; with the law's own error";
   if (uncertain_parameters(law).empty()) return "none: the parameters have no covariance; calibrate again";
   if (!std::isfinite(law.scatter.compression))
     return "95 %, of the mean curve only: the parameters have no scatter between packings; calibrate again, with two "
-           "seeds or more";
-  return "95 %, of the mean curve and of a single run";
+           "seeds or more" +
+           of_law;
+  return "95 %, of the mean curve and of a single run" + of_law;
 }
 
 }  // namespace grainlaw

@@ -117,7 +117,11 @@ TEST(CalibratedLaw, BandsNeedErrorsAndTwoPackings) {
   EXPECT_EQ(uncertain_parameters(law), (std::vector<std::size_t>{3, 7}));
   EXPECT_TRUE(available_bands(law).starts_with("95 %, of the mean curve only: ")) << available_bands(law);
   law.scatter = {2, 5, 1e-3, 0.02, 0.01};
-  EXPECT_EQ(available_bands(law), "95 %, of the mean curve and of a single run");
+  EXPECT_EQ(available_bands(law),
+            "95 %, of the mean curve and of a single run; the law's own error is not in them: no other "
+            "path was rehearsed");
+  law.rehearsals.emplace_back();
+  EXPECT_EQ(available_bands(law), "95 %, of the mean curve and of a single run; with the law's own error");
 }
 
 TEST(Estimate, IntervalsAreStudents) {
