@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -23,6 +24,7 @@ constexpr double kImplausible = 3;       // factor by which a mean field may be 
 constexpr double kMeanFieldPressure = 0.87 / (2 * std::numbers::pi);  // P* over nu C <delta>/<r> at w = 3
 constexpr double kLeastFabric = 0.9, kMostFabric = 2;  // F_v over nu C, nu (C + 3 phi_r): g3 = 1 ... 1.63
 constexpr double kTurned = 0.1;                        // shear after which stress and fabric have come to its direction
+constexpr double kAligned = 0.93;                      // cosine of a mean over shear to its direction
 constexpr double kFewSpheres = 1000;                   // where their number is not told
 
 bool near(double a, double b) { return std::abs(a - b) <= 0.02 * std::abs(b); }
@@ -320,6 +322,23 @@ class SeriesCheck {
     }
   }
 
+  /// Whether the tensor would point along the first shear with its sign turned or its axes named otherwise: an honest
+  /// packing that is off, a crystal or one of few spheres, would not.
+  bool points_along_with_other_columns(const Deviator<double>& mean) const {
+    const Eigen::Matrix3d a = tensor_of<double>(mean);
+    double best = -mean.dot(N_);
+    std::array<int, 3> axis{0, 1, 2};
+    do {
+      Eigen::Matrix3d named;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j)
+          named(i, j) = a(axis[static_cast<std::size_t>(i)], axis[static_cast<std::size_t>(j)]);
+      }
+      best = std::max(best, deviator<double>(named).dot(N_));
+    } while (std::next_permutation(axis.begin(), axis.end()));
+    return best > kAligned * mean.norm();
+  }
+
   /// The mean of stress ratio and fabric over the first shear, its beginning left out.
   void check_direction() const {
     const auto first = std::find_if(segments_.begin(), segments_.end(), [](const StraightSegment& s) {
@@ -343,7 +362,7 @@ class SeriesCheck {
     for (const auto& [sum, name] : {std::pair{s, "stress"}, {F, "fabric"}}) {
       const Deviator<double> mean = sum / rows;
       const double along = mean.dot(N_), across = (mean - along * N_).norm();
-      if (across <= 0.7 * along + scatter(2)) continue;
+      if (across <= 0.7 * along + scatter(2) || !points_along_with_other_columns(mean)) continue;
       refuse(
           last, name,
           fmt::format("its deviator{} is {:.3g} along the shear and {:.3g} across it, in the mean from {} of the shear "
