@@ -88,6 +88,30 @@ bool add_curve(predict::PredictedCurve curve, const std::function<predict::Predi
   return true;
 }
 
+/// What `start` gives; its refusal under the name of the file, key or row that it came from.
+template <class Start>
+auto named(const std::string& name, const Start& start) {
+  try {
+    return start();
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", name, error.what()));
+  }
+}
+
+/// The values measured in the first row of a run.
+LawState<double> measured_start(const TestRecord& test) {
+  return named(fmt::format("{}.csv: row 1, column 'P_star'", test.name),
+               [&] { return predict::state_from_row(test.rows.front()); });
+}
+
+/// Refuses a start below jamming, before anything is written.
+void check_starts(const PredictionInput& input) {
+  named(input.path_name + ": initial.nu",
+        [&] { return predict::state_from_law(input.law.parameters, input.path.path.nu); });
+  if (!input.finished_runs || input.initial == Initial::law) return;
+  for (const DatasetTest& test : input.finished_runs->dataset.tests) measured_start(test.record);
+}
+
 /// Curves at equal steps, from the law's own start.
 void add_free_curves(const Law& law, predict::PredictionFolder& content) {
   for (const Rung model : law.rungs) {
@@ -105,7 +129,7 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
     for (const Rung model : law.rungs) {
       for (const Initial initial : initials_of(input)) {
         const auto start = initial == Initial::law ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
-                                                   : predict::state_from_row(test.record.rows.front());
+                                                   : measured_start(test.record);
         const bool added = add_curve(
             {model, initial, seed, fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed), {}},
             [&] { return law.along(model, initial, start, points); }, content);
@@ -280,7 +304,7 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   const Law law{
       input.law, rungs_of(input), path, decides ? std::vector<StraightSegment>{} : resolve(path), {{}, execution.stop}};
   for (const Rung model : law.rungs) require_parameters(input.law, model, input.law_name);
-  predict::state_from_law(input.law.parameters, path.nu);    // refuses a start below jamming before anything is written
+  check_starts(input);
   if (input.new_runs) planned_runs(*input.new_runs, input);  // likewise what cannot be run
 
   predict::PredictionFolder content;

@@ -25,7 +25,7 @@ void check_pairs(const Prediction& prediction, const TestRecord& test) {
       throw InvalidInput(
           fmt::format("{}: row {}: predicted at another strain than observed ({:.3g} apart); predict at "
                       "points_of(test)",
-                      test.name, i, off));
+                      test.name, i + 1, off));
     }
   }
 }

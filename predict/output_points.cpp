@@ -14,7 +14,7 @@ constexpr double kStrainTolerance = 1e-9;  // rounding of a strain that was inte
 constexpr double kDensityTolerance = 1e-6;
 
 [[noreturn]] void refuse(const TestRecord& test, std::size_t row, const std::string& why) {
-  throw InvalidInput(fmt::format("{}: row {}: {}", test.name, row, why));
+  throw InvalidInput(fmt::format("{}: row {}: {}", test.name, row + 1, why));
 }
 
 }  // namespace

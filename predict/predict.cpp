@@ -58,11 +58,16 @@ void check_start(const LawParameters<double>& parameters, double nu, const LawSt
           throw InvalidInput(fmt::format("the state at the start of the prediction is not finite in {}", part.name));
       },
       start);
-  if (!(start.P > 0)) throw InvalidInput(fmt::format("the start is not jammed: P* = {} is not positive", start.P));
   const double nu_c = parameters.isotropic.pressure.nu_c;
   if (!(nu > nu_c)) {
+    throw InvalidInput(fmt::format(
+        "the start is not jammed: nu = {:.9g} is not above the law's pressure.nu_c = {:.9g}; start denser", nu, nu_c));
+  }
+  if (!(start.P > 0)) {
     throw InvalidInput(
-        fmt::format("the start is not jammed: nu = {:.9g} is not above pressure.nu_c = {:.9g}", nu, nu_c));
+        fmt::format("the start is not jammed: P_star = {} at nu = {:.9g} is not positive; check the "
+                    "parameters of the pressure, or start denser",
+                    start.P + 0.0, nu));
   }
 }
 
@@ -173,7 +178,10 @@ LawState<double> state_from_law(const LawParameters<double>& parameters, double 
 LawState<double> state_from_row(const Observation& row) {
   const double P = row.stress.tensor.trace() / 3;
   if (!(P > 0 && row.P_star > 0)) {
-    throw InvalidInput(fmt::format("the measured start is not jammed: P = {} Pa, P_star = {}", P, row.P_star));
+    throw InvalidInput(
+        fmt::format("the measured start is not jammed: P_star = {} ({} Pa) at nu = {:.9g} is not positive; "
+                    "start from the law's own values, or where the packing is jammed",
+                    row.P_star + 0.0, P + 0.0, row.nu));
   }
   const LawState<double> state{row.P_star, deviator<double>(row.stress.tensor) * (row.P_star / P),
                                deviator<double>(row.fabric.tensor)};

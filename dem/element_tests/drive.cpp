@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "model/vocabulary/error.hpp"
+#include "model/vocabulary/portable.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -20,6 +21,20 @@ bool is_upright(const StraightSegment& segment) {
 double leading_rate(const Eigen::Matrix3d& D) {
   const double compressed = D.diagonal().minCoeff();
   return compressed < 0 ? compressed : D.diagonal().maxCoeff();
+}
+
+/// The functions of a cosine drive: those of the C library, or the same bits everywhere.
+struct Elementary {
+  double (*expm1)(double);
+  double (*log1p)(double);
+  double (*sin)(double);
+  double (*cos)(double);
+};
+const Elementary& elementary(bool portable) {
+  static constexpr Elementary kLibrary{[](double x) { return std::expm1(x); }, [](double x) { return std::log1p(x); },
+                                       [](double x) { return std::sin(x); }, [](double x) { return std::cos(x); }};
+  static constexpr Elementary kPortable{portable::expm1, portable::log1p, portable::sin, portable::cos};
+  return portable ? kPortable : kLibrary;
 }
 
 }  // namespace
@@ -51,33 +66,39 @@ Drive make_drive(const StraightSegment& segment, const DriveOptions& options, co
   return drive;
 }
 
+Eigen::Vector3d stretch_of(const StraightSegment& segment, double e) {
+  const Eigen::Vector3d strain = e * segment.direction.tensor.diagonal();
+  if (segment.portable) return strain.unaryExpr([](double x) { return portable::exp(x); });
+  return strain.array().exp();
+}
+
 double path_parameter(const Drive& drive, double t) {
   const double length = drive.segment.length;
   if (t <= 0) return 0;
   if (t >= drive.duration) return length;
   if (drive.options.profile == Profile::constant) return length * t / drive.duration;
   const double a = leading_rate(drive.segment.direction.tensor);
-  const double stretch = std::expm1(a * length);  // (z_f - z_0)/z_0
-  return std::log1p(stretch * (1 - std::cos(std::numbers::pi * t / drive.duration)) / 2) / a;
+  const Elementary& f = elementary(drive.segment.portable);
+  const double stretch = f.expm1(a * length);  // (z_f - z_0)/z_0
+  return f.log1p(stretch * (1 - f.cos(std::numbers::pi * t / drive.duration)) / 2) / a;
 }
 
 double path_parameter_rate(const Drive& drive, double t) {
   if (t < 0 || t > drive.duration) return 0;
   if (drive.options.profile == Profile::constant) return drive.segment.length / drive.duration;
   const double a = leading_rate(drive.segment.direction.tensor);
-  const double stretch = std::expm1(a * drive.segment.length);
+  const Elementary& f = elementary(drive.segment.portable);
+  const double stretch = f.expm1(a * drive.segment.length);
   const double phase = std::numbers::pi * t / drive.duration;
-  const double z = 1 + stretch * (1 - std::cos(phase)) / 2;
-  return stretch * std::sin(phase) * std::numbers::pi / (2 * drive.duration) / (z * a);
+  const double z = 1 + stretch * (1 - f.cos(phase)) / 2;
+  return stretch * f.sin(phase) * std::numbers::pi / (2 * drive.duration) / (z * a);
 }
 
 CellMotion motion_at(const Drive& drive, double t) {
-  const Eigen::Matrix3d& D = drive.segment.direction.tensor;
   const double e = path_parameter(drive, t);
   CellMotion motion;
-  const Eigen::Vector3d stretch = (e * D.diagonal()).array().exp();
-  motion.H = stretch.asDiagonal() * drive.H_0;
-  motion.L = path_parameter_rate(drive, t) * D;
+  motion.H = stretch_of(drive.segment, e).asDiagonal() * drive.H_0;
+  motion.L = path_parameter_rate(drive, t) * drive.segment.direction.tensor;
   motion.transport = drive.options.transport;
   return motion;
 }

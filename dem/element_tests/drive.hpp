@@ -51,6 +51,9 @@ double strain_of(const StraightSegment& segment);
 /// Throws InvalidInput unless D is diagonal and without spin and the strain rate positive and finite.
 Drive make_drive(const StraightSegment& segment, const DriveOptions& options, const Eigen::Matrix3d& H_0);
 
+/// exp(e D), of the edges of a cell [-].
+Eigen::Vector3d stretch_of(const StraightSegment& segment, double e);
+
 double path_parameter(const Drive& drive, double t);       ///< e(t), exact at both ends [-]
 double path_parameter_rate(const Drive& drive, double t);  ///< de/dt [1/s]
 CellMotion motion_at(const Drive& drive, double t);        ///< H, L and transport

@@ -20,17 +20,10 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
 void check_options(const State& start, const ElementTestOptions& options) {
-  const double fraction = options.engine.time_step_fraction;
-  if (!(fraction > 0) || !std::isfinite(fraction)) {
-    throw InvalidInput(fmt::format("time_step_fraction: {} must be positive and finite", fraction));
-  }
-  if (options.check_time_step && fraction > kMaxTimeStepFraction) {
-    throw InvalidInput(
-        fmt::format("time_step_fraction: {} is beyond {}, where the integration becomes unstable; give a smaller one",
-                    fraction, kMaxTimeStepFraction));
-  }
   if (options.rows < 1) throw InvalidInput("rows: must be at least 1");
   if (start.packing.size() == 0) throw InvalidInput("packing: an element test needs at least one sphere");
+  if (options.check_time_step)
+    check_time_step(options.engine.time_step_fraction, start.material, lightest_pair(start.packing));
 }
 
 /// One run in progress: where it stands on the path and what has been seen so far. The packing is the stepper's.
@@ -182,7 +175,7 @@ void fill_path(Observation& row, const StraightSegment& segment, int index, doub
   // after a reversal to the start only rounding is left: it has no direction
   if (row.eps_dev > 1e-12 * (row.shear_path + std::abs(row.eps_vol))) {
     row.shape_strain = shape_factor(row.strain.tensor);
-    row.lode_strain = lode_angle(row.strain.tensor);
+    row.lode_strain = lode_angle(row.strain.tensor, segment.portable);
   }
 }
 

@@ -32,10 +32,10 @@ RunControl with_stage(const RunControl& control, const std::string& stage, doubl
   return named;
 }
 
-std::vector<StraightSegment> isotropic_segment(const Packing& from, double to_nu) {
+std::vector<StraightSegment> isotropic_segment(const Packing& from, double to_nu, bool portable) {
   const double nu = volume_fraction(from);
   const StrainRate direction = direction_of(Mode::ISO, "xyz", to_nu < nu);
-  return resolve({nu, Branch::loading, {{Mode::ISO, direction, ExtentKind::target_nu, to_nu}}});
+  return resolve({nu, Branch::loading, {{Mode::ISO, direction, ExtentKind::target_nu, to_nu}}}, portable);
 }
 
 /// Densities of a branch in the order in which it crosses them, each once.
@@ -93,7 +93,7 @@ class Preparation {
 
   State compress(Origin from) {
     State start = drive_to(std::move(from), options_.nu_start, gas_options(options_), kGasCompression, {}).end;
-    scale_to_volume_fraction(start.packing, options_.nu_start);
+    scale_to_volume_fraction(start.packing, options_.nu_start, options_.engine.portable_bits);
     relax(start, options_.engine, options_.relax, with_stage(control_, "relaxation of the gas"));
     return start;
   }
@@ -123,7 +123,7 @@ class Preparation {
     }
     const RunControl control = with_stage(
         control_, stage, static_cast<double>(steps_before_) * static_cast<double>(options_.packing.particles));
-    const auto segment = isotropic_segment(start_of(from), to_nu);
+    const auto segment = isotropic_segment(start_of(from), to_nu, options_.engine.portable_bits);
     ElementTest test = checkpoint
                            ? continue_element_test(std::move(*checkpoint), segment, options, control, on_step, staged)
                            : run_element_test(std::get<State>(from), segment, options, control, on_step, staged);
@@ -153,7 +153,7 @@ class Preparation {
       const double nu = densities[next];
       if (!(sink_.has && sink_.has(branch, nu))) {
         KeptState kept{branch, nu, passing, {}};
-        scale_to_volume_fraction(kept.state.packing, nu);
+        scale_to_volume_fraction(kept.state.packing, nu, options_.engine.portable_bits);
         const RunControl named = with_stage(control_, fmt::format("relaxation at {:.4g}", nu));
         kept.relaxation = relax(kept.state, options_.engine, options_.relax, named);
         sink_.keep(kept);

@@ -52,7 +52,7 @@ class QuasiStaticStepper : public Stepper {
   void step() override {
     const double e = place_after(done_ + 1);
     State next = state_;
-    const Eigen::Vector3d stretch = (e * segment_->direction.tensor.diagonal()).array().exp();
+    const Eigen::Vector3d stretch = stretch_of(*segment_, e);
     next.packing.H = stretch.asDiagonal() * H_0_;
     Ledger ledger = state_.ledger;
     const double E_pot = ledger.E_start + ledger.W_box - ledger.D_contact;

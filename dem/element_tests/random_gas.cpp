@@ -72,7 +72,7 @@ State random_gas(const PackingOptions& options, double nu_gas, const EngineOptio
   }
   round_radii(p);  // the same packing in every precision
   set_masses(p, options.material);
-  scale_to_volume_fraction(p, nu_gas);
+  scale_to_volume_fraction(p, nu_gas, engine.portable_bits);
 
   // Random spheres overlap; they are pushed apart at fixed cell. What a hard case may leave stays repulsive.
   relax(state, engine, RelaxOptions{}, control);

@@ -94,7 +94,8 @@ class TimeStepper : public Stepper {
         "energy balance: residual {:.3g} at row {} (segment {}, nu = {:.6g}, step {}) is beyond {}; the results would "
         "be "
         "wrong, give a smaller time_step_fraction than {}",
-        residual, index, segment, row.nu, steps_, options_.stop_energy_residual, options_.engine.time_step_fraction));
+        residual, index + 1, segment, row.nu, steps_, options_.stop_energy_residual,
+        options_.engine.time_step_fraction));
   }
 
   std::vector<std::string> warnings(std::size_t rows) const override {

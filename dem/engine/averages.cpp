@@ -19,7 +19,8 @@ struct ContactSums {
 };
 
 template <bool wall_driven>
-ContactSums sum_contacts(const ForceField& field, const std::vector<double>& radius, std::size_t begin, std::size_t end) {
+ContactSums sum_contacts(const ForceField& field, const std::vector<double>& radius, std::size_t begin,
+                         std::size_t end) {
   ContactSums sums;
   for (std::size_t i = begin; i < end; ++i) {
     Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();
@@ -98,13 +99,13 @@ Observation observe(Simulation& sim, const CellMotion& motion, const Deviator<do
   const double P = row.stress.tensor.trace() / 3;
   row.P_star = p.size() > 0 ? 2 * mean_r / material.stiffness * P : 0;
   row.shape_stress = shape_factor(-row.stress.tensor);
-  row.lode_stress = lode_angle(-row.stress.tensor);
+  row.lode_stress = lode_angle(-row.stress.tensor, sim.options().portable_bits);
 
   row.fabric.tensor = sums.fabric / V;
   row.F_v = row.fabric.tensor.trace();
   set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
   row.shape_fabric = shape_factor(-row.fabric.tensor);
-  row.lode_fabric = lode_angle(-row.fabric.tensor);
+  row.lode_fabric = lode_angle(-row.fabric.tensor, sim.options().portable_bits);
 
   const double M = static_cast<double>(sums.contacts), M4 = static_cast<double>(sums.backbone_contacts),
                N4 = static_cast<double>(sums.backbone_spheres);

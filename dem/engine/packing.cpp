@@ -2,14 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "model/vocabulary/error.hpp"
+#include "model/vocabulary/portable.hpp"
 
 namespace grainlaw::dem {
+namespace {
+
+// Spheres far larger than the cell would touch an unbounded number of their own images.
+constexpr double kMaxRadiusOverHeight = 2;
+constexpr double kMaxFilling = 2;
+
+}  // namespace
 
 void resize(Packing& p, std::size_t n) {
   for (auto* a : {&p.radius, &p.mass, &p.sx, &p.sy, &p.sz, &p.vx, &p.vy, &p.vz}) a->assign(n, 0.0);
@@ -45,7 +54,10 @@ double mean_radius(const Packing& p) {
   return std::accumulate(p.radius.begin(), p.radius.end(), 0.0) / static_cast<double>(p.size());
 }
 
-void scale_to_volume_fraction(Packing& p, double nu) { p.H *= std::cbrt(volume_fraction(p) / nu); }
+void scale_to_volume_fraction(Packing& p, double nu, bool portable) {
+  const double ratio = volume_fraction(p) / nu;
+  p.H *= portable ? portable::cbrt(ratio) : std::cbrt(ratio);
+}
 
 void remove_drift(Packing& p) {
   const double total_mass = std::accumulate(p.mass.begin(), p.mass.end(), 0.0);
@@ -75,11 +87,38 @@ void check(const Packing& p) {
   }
 }
 
-double min_collision_time(const Packing& p, const Material& material) {
+void check_sizes(const Packing& p) {
+  if (p.size() == 0) return;
+  const double height = p.H.inverse().rowwise().norm().cwiseInverse().minCoeff();
+  const double largest = *std::max_element(p.radius.begin(), p.radius.end());
+  if (!(largest <= kMaxRadiusOverHeight * height)) {
+    throw InvalidInput(fmt::format("radius {} does not fit a cell of height {}; are both in metres?", largest, height));
+  }
+  if (!(volume_fraction(p) <= kMaxFilling)) {
+    throw InvalidInput(fmt::format("the spheres fill {:.3g} times the cell; are both in metres?", volume_fraction(p)));
+  }
+}
+
+void check(const Material& m) {
+  for_each_field<Material>([&](const auto& field) {
+    const double value = m.*field.access;
+    const bool viscosity =
+        field.access == &Material::contact_viscosity || field.access == &Material::background_viscosity;
+    if (std::isfinite(value) && (viscosity ? value >= 0 : value > 0)) return;
+    throw InvalidInput(fmt::format("{}: {} {} must be {} and finite", field.name, value, field.unit,
+                                   viscosity ? "0 or more" : "positive"));
+  });
+}
+
+double lightest_pair(const Packing& p) {
   if (p.size() == 0) return std::numeric_limits<double>::quiet_NaN();
   std::vector<double> lightest(std::min<std::size_t>(2, p.size()));
   std::partial_sort_copy(p.mass.begin(), p.mass.end(), lightest.begin(), lightest.end());
-  return collision_time(material, reduced_mass(lightest.front(), lightest.back()));
+  return reduced_mass(lightest.front(), lightest.back());
+}
+
+double min_collision_time(const Packing& p, const Material& material) {
+  return collision_time(material, lightest_pair(p));
 }
 
 }  // namespace grainlaw::dem

@@ -12,11 +12,11 @@
 namespace grainlaw::dem {
 
 struct Packing {
-  std::vector<std::int64_t> id;        ///< stable name of each sphere
-  std::vector<double> radius;          ///< [m]
-  std::vector<double> mass;            ///< [kg]
-  std::vector<double> sx, sy, sz;      ///< fractions of the cell [-]
-  std::vector<double> vx, vy, vz;      ///< fluctuation velocities [m/s]
+  std::vector<std::int64_t> id;                     ///< stable name of each sphere
+  std::vector<double> radius;                       ///< [m]
+  std::vector<double> mass;                         ///< [kg]
+  std::vector<double> sx, sy, sz;                   ///< fractions of the cell [-]
+  std::vector<double> vx, vy, vz;                   ///< fluctuation velocities [m/s]
   Eigen::Matrix3d H = Eigen::Matrix3d::Identity();  ///< cell, upper triangular, positive diagonal [m]
 
   std::size_t size() const { return radius.size(); }
@@ -38,7 +38,7 @@ double volume_fraction(const Packing& packing);  ///< nu [-]
 double mean_radius(const Packing& packing);      ///< <r> of this packing [m]; NaN when empty
 
 /// Scales H isotropically so that the volume fraction becomes `nu`. Needs at least one sphere.
-void scale_to_volume_fraction(Packing& packing, double nu);
+void scale_to_volume_fraction(Packing& packing, double nu, bool portable = false);
 
 /// Removes the mean momentum [kg m/s].
 void remove_drift(Packing& packing);
@@ -47,7 +47,14 @@ void remove_drift(Packing& packing);
 /// finite, H upper triangular with positive diagonal.
 void check(const Packing& packing);
 
-/// Smallest collision time of any pair that the sizes allow (the two lightest spheres, or one with its own image) [s].
+/// Throws InvalidInput when no cell of this size can hold the spheres: solid volume above twice the cell's, or a radius
+/// above twice its smallest height. Their units are most likely wrong.
+void check_sizes(const Packing& packing);
+
+/// Reduced mass of the lightest pair that the sizes allow: the two lightest spheres, or one with its own image [kg].
+double lightest_pair(const Packing& packing);
+
+/// Smallest collision time of any pair [s].
 double min_collision_time(const Packing& packing, const Material& material);
 
 }  // namespace grainlaw::dem

@@ -16,13 +16,18 @@ namespace grainlaw::dem {
 /// dt/t_c,min beyond which no run may be started; the integrator becomes unstable between 0.48 and 0.56 for w = 3.
 inline constexpr double kMaxTimeStepFraction = 0.4;
 
+/// Throws InvalidInput unless the step is positive, at most kMaxTimeStepFraction of the collision time of the lightest
+/// pair, and stable with its damping (stable_time_step of a pair 1.5 times lighter: a sphere has several contacts).
+void check_time_step(double time_step_fraction, const Material& material, double lightest_pair);
+
 /// A state in motion, stepped by one of the two engines. An engine may keep its own copy of the spheres and leave the end of
 /// a step undone; whoever asks for the state gets it current, whole, and the asking changes no bit of what follows.
 class Simulation {
  public:
   /// Chooses dt = time_step_fraction * t_c,min, builds the list and, for a state without accelerations, the forces for
   /// `motion` (whose H becomes the state's). Throws InvalidInput when dt is not positive and finite (its size is judged by
-  /// those who start runs), the state does not pass check(), two touching spheres share one position, or one lies deep in
+  /// those who start runs, by check_time_step()), state or material do not pass check() or check_sizes(), the cell's motion is
+  /// not finite, two touching spheres share one position, or one lies deep in
   /// another (overlap above the smaller radius) with nothing to balance half the force of that contact (ids are named).
   Simulation(State state, const EngineOptions& options, const CellMotion& motion);
 

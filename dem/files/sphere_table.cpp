@@ -23,17 +23,16 @@ namespace {
 constexpr std::size_t kMaxLine = 1'000'000;
 constexpr std::size_t kMaxRows = 100'000'000;
 constexpr double kMaxCellsAway = 1000;
-constexpr double kMaxVolumeFraction = 2;
-constexpr double kMaxRadiusOverHeight = 2;
 
 enum Column : std::size_t { id, x, y, z, r, vx, vy, vz, kColumns };
 constexpr std::array<std::string_view, kColumns> kName{"id", "x", "y", "z", "r", "vx", "vy", "vz"};
 constexpr std::array<std::string_view, kColumns> kUnit{"", "m", "m", "m", "m", "m/s", "m/s", "m/s"};
 
 /// What is wrong where, as one line.
-InvalidInput refusal(const std::filesystem::path& file, std::size_t row, std::string_view column,
+InvalidInput refusal(const std::filesystem::path& file, std::size_t line, std::string_view column,
                      const std::string& why) {
-  const std::string where = column.empty() ? fmt::format("row {}", row) : fmt::format("row {}, column {}", row, column);
+  const std::string where =
+      column.empty() ? fmt::format("line {}", line) : fmt::format("line {}, column {}", line, column);
   return InvalidInput(fmt::format("{}: {}: {}", file.string(), where, why));
 }
 
@@ -170,20 +169,6 @@ void check_cell(const std::filesystem::path& file, const Eigen::Matrix3d& H) {
   }
 }
 
-/// Spheres far larger than the cell would touch an unbounded number of their own images.
-void check_sizes(const std::filesystem::path& file, const Packing& p) {
-  const double height = p.H.inverse().rowwise().norm().cwiseInverse().minCoeff();
-  const double largest = *std::max_element(p.radius.begin(), p.radius.end());
-  if (!(largest <= kMaxRadiusOverHeight * height)) {
-    throw InvalidInput(fmt::format("{}: radius {} does not fit a cell of height {}; are both in metres?", file.string(),
-                                   largest, height));
-  }
-  if (!(volume_fraction(p) <= kMaxVolumeFraction)) {
-    throw InvalidInput(fmt::format("{}: the spheres fill {:.3g} times the cell; are both in metres?", file.string(),
-                                   volume_fraction(p)));
-  }
-}
-
 }  // namespace
 
 State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cell, const Material& material) {
@@ -191,7 +176,7 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
   LineReader lines(file);
   std::string line;
   if (!lines.next(line))
-    throw refusal(file, 1, "", "the file is empty; give a header id,x,y,z,r and one row per sphere");
+    throw refusal(file, 1, "", "the file is empty; give a header id,x,y,z,r and one line per sphere");
   const std::vector<Column> order = read_header(file, line);
 
   State state;
@@ -203,14 +188,14 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
   while (lines.next(line)) {
     if (trimmed(line).empty()) {
       while (lines.next(line)) {
-        if (!trimmed(line).empty()) throw refusal(file, lines.row, "", "follows an empty row; remove that");
+        if (!trimmed(line).empty()) throw refusal(file, lines.row, "", "follows an empty line; remove that");
       }
       break;
     }
     const Sphere sphere = read_row(file, lines.row, line, order);
     const auto [earlier, fresh] = row_of.emplace(sphere.name, lines.row);
     if (!fresh)
-      throw refusal(file, lines.row, "id", fmt::format("{} is already in row {}", sphere.name, earlier->second));
+      throw refusal(file, lines.row, "id", fmt::format("{} is already in line {}", sphere.name, earlier->second));
     if (p.size() == kMaxRows) throw refusal(file, lines.row, "", "more than 1e8 spheres are not supported");
     const auto& value = sphere.value;
     const Eigen::Vector3d s = inverse * Eigen::Vector3d(value[x], value[y], value[z]);
@@ -227,7 +212,11 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
     p.vz.push_back(value[vz]);
   }
   if (p.size() == 0) throw refusal(file, lines.row, "", "no spheres follow the header");
-  check_sizes(file, p);
+  try {
+    check_sizes(p);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
+  }
   p.mass.resize(p.size());
   set_masses(p, material);
   check(p);

@@ -8,8 +8,8 @@
 
 namespace grainlaw::dem {
 
-/// Reads the table. `cell` is H: upper triangular, columns are edge vectors [m]. Throws InvalidInput naming file, row
-/// (of the file, the header is row 1) and column. Bounded memory: at most 1e8 rows, lines of at most 1 MB. Spheres that
+/// Reads the table. `cell` is H: upper triangular, columns are edge vectors [m]. Throws InvalidInput naming file, line
+/// (the header is line 1) and column. Bounded memory: at most 1e8 rows, lines of at most 1 MB. Spheres that
 /// no cell of this size can hold (solid volume above twice the cell's, radius above twice its smallest height) and
 /// positions more than 1000 cells away are refused: their units are most likely wrong.
 State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cell, const Material& material);

@@ -19,8 +19,12 @@ constexpr double kUnloadTo = 0.66;  // just below jamming, so that the unloading
 /// The lightest sphere of the distribution, uniform on 2<r>/(w+1) [1, w].
 double smallest_radius(const PackingOptions& packing) { return 2 * packing.mean_radius / (packing.size_width + 1); }
 
+double lightest_pair(const PackingOptions& packing) {
+  return sphere_mass(packing.material, smallest_radius(packing)) / 2;
+}
+
 double shortest_collision(const PackingOptions& packing) {
-  return collision_time(packing.material, sphere_mass(packing.material, smallest_radius(packing)) / 2);
+  return collision_time(packing.material, lightest_pair(packing));
 }
 
 std::vector<StraightSegment> isotropic(double from, double to) {
@@ -69,6 +73,7 @@ void complete_preparation(PreparationOptions& o, const std::string& name) {
           o.packing.material.contact_viscosity,
           std::sqrt(2 * o.packing.material.stiffness * sphere_mass(o.packing.material, smallest_radius(o.packing)))));
     }
+    check_time_step(o.engine.time_step_fraction, o.packing.material, lightest_pair(o.packing));
     if (const double steps = expected_steps(o); !(steps <= kMaxSteps)) {
       throw InvalidInput(fmt::format(
           "strain_rate: {} 1/s makes the preparation {:.3g} steps long, more than {:.0g}; give a larger one",

@@ -19,9 +19,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Portable runs of versions that took the C library's functions are not these.
+void name_functions(Json& request, const EngineOptions& engine) {
+  if (engine.portable_bits) request["elementary_functions"] = "own";
+}
+
 /// A preparation as its tests depend on it: without rows and without the list of states that were kept on the way.
 Json packing_identity(const PreparationOptions& o) {
   Json identity = fields_to_json(o, true);
+  name_functions(identity, o.engine);
   if (!o.nu_end) identity["nu_end"] = o.nu_start;
   if (o.drive.quasi_static_step == 0) {  // else rows are part of how the steps are cut
     identity.erase("rows");
@@ -64,6 +70,7 @@ Json request_of(const TestSetup& test) {
   given.update(Json(fields_to_json(o.packing.material)));
   given.update(Json(fields_to_json(o.engine)));
   given.update(Json(fields_to_json(o.drive)));
+  name_functions(given, o.engine);
   if (o.drive.quasi_static_step == 0) given.erase("quasi_static_step");
   return request;
 }
@@ -117,7 +124,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   options.rows = test.rows;
   const fs::path folder = policy.resume ? store.reopen(key) : store.begin(key);
   const CheckpointFiles checkpoints(folder, key, policy);
-  const auto segments = resolve(test.path);
+  const auto segments = resolve(test.path, o.engine.portable_bits);
   std::optional<PathProbes> probes;
   if (test.probes) probes.emplace(folder, *test.probes, segments, o.engine.threads, control);
   auto checkpoint = checkpoints.load();

@@ -23,6 +23,24 @@ Eigen::Matrix3d cell_from(const Json& rows) {
   return H;
 }
 
+/// Keys of a packing that is made here say nothing about one that is given.
+void refuse_unread_keys(const Json& document, Start start, const std::string& name) {
+  if (start != Start::spheres && start != Start::state) return;
+  const bool spheres = start == Start::spheres;
+  const auto refuse = [&](const char* key, const char* why) {
+    if (document.contains(key)) throw InvalidInput(fmt::format("{}: {}: {}", name, key, why));
+  };
+  const char* made = "belongs to a packing that is made, but here it is given; remove it";
+  for_each_field<PackingOptions>([&](const auto& field) { refuse(field.name, made); });
+  for (const char* key : {"nu_start", "nu_max", "nu_end"}) refuse(key, made);
+  if (spheres) return;
+  for_each_field<Material>([&](const auto& field) {
+    refuse(field.name,
+           "is not read, the state has its own; remove it, or give the spheres of the state (end.csv) and their 'cell' "
+           "in place of 'state', to which it applies");
+  });
+}
+
 Start start_from(const Json& document, const std::string& name) {
   Start start = Start::preparation;
   int given = 0;
@@ -52,7 +70,19 @@ Start start_from(const Json& document, const std::string& name) {
     throw InvalidInput(
         fmt::format("{}: misses the key 'segments'; give the path from 'initial', or 'keep' instead of it", name));
   }
+  refuse_unread_keys(document, start, name);
   return start;
+}
+
+/// What no simulation could start from.
+void check_given(const State& given, const EngineOptions& engine, const std::string& name) {
+  try {
+    check(given.material);
+    check_sizes(given.packing);
+    check_time_step(engine.time_step_fraction, given.material, lightest_pair(given.packing));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", name, error.what()));
+  }
 }
 
 }  // namespace
@@ -77,7 +107,8 @@ TestFile read_test(const std::filesystem::path& file) {
   if (document.contains("keep")) {
     for (const Json& kept : document["keep"]) keep(kept);
   }
-  complete_preparation(preparation, name);
+  const bool made = test.start == Start::preparation || test.start == Start::kept;
+  if (made) complete_preparation(preparation, name);
   if (test.start == Start::preparation) return test;
 
   const auto beside = [&](const char* key) { return file.parent_path() / document[key].get<std::string>(); };
@@ -88,6 +119,7 @@ TestFile read_test(const std::filesystem::path& file) {
     test.given = read_state(beside("state"));
     test.given_digest = sha256_of_file(beside("state"));
   }
+  if (test.given) check_given(*test.given, preparation.engine, name);
   Json path{{"initial", document.value("initial", Json::object())},
             {"segments", document.value("segments", Json::array())}};
   if (test.given) path["initial"]["nu"] = volume_fraction(test.given->packing);

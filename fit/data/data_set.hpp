@@ -1,11 +1,6 @@
 #pragma once
-// The tests of a calibration, refused when they cannot be trusted and sorted by what they can say. Most columns of a row
-// follow from others; where they do not, columns were swapped or units changed on the way.
-//   P* = 2<r>/k tr(sigma)/3,  nu = nu_0 exp(-eps_vol),  eps_vol = tr eps,  F_v = tr F,  C = (1 - phi_r) C*,
-//   eps_dev, s_dev, F_dev: norms of the tensors;  s_par, F_par: their parts along the test's first shear
-//   strain: on the segment of the path that the row says
-// Two relations hold for any packing of soft spheres, within factors that depend on the size distribution:
-//   P* = g_p nu C <delta>/(2 pi <r>), g_p = 0.7 ... 1;  F_v = g3 nu C, g3 = 1 ... 1.5
+// The tests of a calibration, refused when they cannot be trusted (model/vocabulary/series_check.hpp says what a series
+// cannot say) and sorted by what they can say.
 
 #include <vector>
 

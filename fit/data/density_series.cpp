@@ -15,7 +15,7 @@ void require(const TestRecord& test, std::size_t row, double value, const char* 
   if (!std::isfinite(value)) {
     throw InvalidInput(
         fmt::format("test {}: row {}, column {} is {} in a jammed state; repeat the test or remove the row", test.name,
-                    row, column, value));
+                    row + 1, column, value));
   }
 }
 

@@ -29,7 +29,7 @@ double parameter_of(const TestRecord& test, std::size_t number, const Eigen::Mat
     throw InvalidInput(
         fmt::format("test {}: row {} is not on segment {} of its path (off by a strain of {:.2g}); check the "
                     "strain columns and the path",
-                    test.name, number, test.rows[number].segment, (strain - e * D).norm()));
+                    test.name, number + 1, test.rows[number].segment, (strain - e * D).norm()));
   }
   return e;
 }
@@ -56,7 +56,7 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
     if (test.rows[i].nu <= nu_min || !is_jammed(test.rows[i]) || !is_jammed(start))
       break;  // the start too is a row here
     if (!e.empty() && at < e.back()) {
-      throw InvalidInput(fmt::format("test {}: row {} goes back on its segment; sort the rows by time", test.name, i));
+      throw InvalidInput(fmt::format("test {}: row {} goes back on its segment; sort the rows by time", test.name, i + 1));
     }
     e.push_back(at);
     strain.push_back(at * std::max(t.direction.de, std::abs(t.direction.dx)));

@@ -21,6 +21,7 @@ class CsvReader {
   explicit CsvReader(const std::filesystem::path& file);
 
   const std::vector<std::string>& header() const { return header_; }  ///< column titles in the order of the file
+  const std::string& name() const { return name_; }                   ///< of the file, for messages
   std::size_t row() const { return row_; }                            ///< number of the row read last
 
   /// The next row, NaN for empty fields, as many values as the header; false at the end.

@@ -12,6 +12,7 @@
 #include "model/files/schema.hpp"
 #include "model/files/series_csv.hpp"
 #include "model/vocabulary/error.hpp"
+#include "model/vocabulary/series_check.hpp"
 
 namespace grainlaw {
 namespace {
@@ -56,6 +57,7 @@ DatasetTest read_test(const Json& object, const fs::path& folder, const std::str
                     "and digest from {} to accept it",
                     file.string(), index, place, index));
   }
+  check_series(test.record.rows, test.record.path, test.record.packing, one_line(file.string(), 200));
   test.probes_sha256 = object.value("probes_sha256", "");
   const fs::path probes = folder / kProbesFolder / (test.record.name + ".csv");
   if (!test.probes_sha256.empty() && sha256_of_file(probes) != test.probes_sha256) {

@@ -27,13 +27,13 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
   bool null() override { return put(nullptr); }
   bool boolean(bool value) override { return put(value); }
   bool number_integer(std::int64_t value) override {
-    if (value == 0 && source_ == JsonSource::user) refuse("negative zero is refused; write 0");
+    if (value == 0 && source_ == JsonSource::user) refuse_negative_zero();
     return put(value);
   }
   bool number_unsigned(std::uint64_t value) override { return put(value); }
   bool number_float(double value, const std::string&) override {
     if (source_ == JsonSource::user) {
-      if (value == 0 && std::signbit(value)) refuse("negative zero is refused; write 0");
+      if (value == 0 && std::signbit(value)) refuse_negative_zero();
       if (value == std::trunc(value) && std::abs(value) < 9.0e18) return put(static_cast<std::int64_t>(value));
     }
     return put(value);
@@ -104,6 +104,13 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
   bool shut() {
     open_.pop_back();
     return true;
+  }
+
+  /// A setting of -0 is a slip. In a matrix it is what programs write for a component that vanishes, and read as 0.
+  void refuse_negative_zero() const {
+    const std::size_t n = open_.size();
+    const bool in_matrix = n >= 2 && open_[n - 1].value->is_array() && open_[n - 2].value->is_array();
+    if (!in_matrix) refuse("negative zero is refused; write 0");
   }
 
   std::string place() const {

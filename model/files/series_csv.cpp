@@ -9,13 +9,10 @@
 #include "model/files/column.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
-#include "model/vocabulary/error.hpp"
+#include "model/vocabulary/series_check.hpp"
 
 namespace grainlaw {
 namespace {
-
-constexpr double kConsistency =
-    1e-3;  // relative; files of others may carry few digits, and a wrong unit or column is far off
 
 class SeriesReader {
  public:
@@ -23,7 +20,7 @@ class SeriesReader {
       : reader_(file),
         columns_(matched<Observation>(reader_)),
         path_(path),
-        stress_unit_(packing.stress_unit()),
+        packing_(packing),
         N_(shear_direction(resolve(path))) {
     for (const auto* column : columns_) given_.insert(column->name);
     if (path.segments.size() > 1 && !given_.contains("segment")) {
@@ -40,6 +37,7 @@ class SeriesReader {
       rows_.push_back(row);
     }
     if (rows_.empty()) reader_.refuse("", "the series has no rows");
+    check_contradictions(rows_, path_, packing_, reader_.name());
     return std::move(rows_);
   }
 
@@ -54,35 +52,20 @@ class SeriesReader {
     set_value(reader_, row, column, value);
   }
 
-  /// Fills `value` when its column is absent; otherwise it must agree with `computed`.
-  void derive(const char* column, double& value, double computed, double scale) const {
-    if (!given_.contains(column)) {
-      value = computed;
-    } else if (!std::isnan(value) && std::abs(value - computed) > kConsistency * std::max(scale, std::abs(computed))) {
-      reader_.refuse(
-          column, fmt::format("{} contradicts the other columns, which give {:.8g}; check units and order of columns",
-                              value, computed));
-    }
-  }
-
+  /// What follows from other columns, where its own is absent.
   void complete(Observation& row) {
-    if (!(row.nu > 0 && row.nu <= 0.9))
-      reader_.refuse("nu", fmt::format("{} is no volume fraction in (0, 0.9]", row.nu));
-    const bool first = rows_.empty();
+    const auto derive = [&](const char* column, double& value, double computed) {
+      if (!given_.contains(column)) value = computed;
+    };
     Observation derived;  // what the given tensors say
     set_strain(derived, row.strain);
-    derive("eps_vol", row.eps_vol, derived.eps_vol, 1e-3);
-    derive("eps_dev", row.eps_dev, derived.eps_dev, 1e-3);
-    const double nu_0 = first ? row.nu * std::exp(row.eps_vol) : nu_0_;
-    if (first) nu_0_ = nu_0;
-    double nu = row.nu;
-    derive("nu", nu, nu_0 * std::exp(-row.eps_vol), 1e-3);
-    if (!given_.contains("shear_path")) {
-      row.shear_path =
-          first ? 0
-                : rows_.back().shear_path +
-                      (deviator<double>(row.strain.tensor) - deviator<double>(rows_.back().strain.tensor)).norm();
-    }
+    derive("eps_vol", row.eps_vol, derived.eps_vol);
+    derive("eps_dev", row.eps_dev, derived.eps_dev);
+    const bool first = rows_.empty();
+    derive("shear_path", row.shear_path,
+           first ? 0
+                 : rows_.back().shear_path +
+                       (deviator<double>(row.strain.tensor) - deviator<double>(rows_.back().strain.tensor)).norm());
     // a corner of the path may be seen twice, at the end of one segment and the start of the next
     const bool corner = !first && row.segment > rows_.back().segment && row.time == rows_.back().time;
     if (!first && !corner && row.time <= rows_.back().time)
@@ -91,21 +74,20 @@ class SeriesReader {
 
     const double P = row.stress.tensor.trace() / 3;
     set_ratios(derived, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N_);
-    derive("P_star", row.P_star, P / stress_unit_, 1e-9);
-    derive("s_dev", row.s_dev, derived.s_dev, 1e-3);
-    derive("s_par", row.s_par, derived.s_par, 1e-3);
-    derive("F_v", row.F_v, row.fabric.tensor.trace(), 1e-3);
-    derive("F_dev", row.F_dev, derived.F_dev, 1e-3);
-    derive("F_par", row.F_par, derived.F_par, 1e-3);
+    derive("P_star", row.P_star, P / packing_.stress_unit());
+    derive("s_dev", row.s_dev, derived.s_dev);
+    derive("s_par", row.s_par, derived.s_par);
+    derive("F_v", row.F_v, row.fabric.tensor.trace());
+    derive("F_dev", row.F_dev, derived.F_dev);
+    derive("F_par", row.F_par, derived.F_par);
   }
 
   CsvReader reader_;
   std::vector<const Column<Observation>*> columns_;
   const Path& path_;
-  double stress_unit_;  // [Pa]
+  const PackingInfo& packing_;
   Deviator<double> N_;
   std::set<std::string> given_;
-  double nu_0_ = 0;  // volume fraction at zero strain
   std::vector<Observation> rows_;
 };
 

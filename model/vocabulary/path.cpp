@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/vocabulary/error.hpp"
+#include "model/vocabulary/portable.hpp"
 
 namespace grainlaw {
 namespace {
@@ -60,7 +61,7 @@ double length_to_eps_dev(const PathSegment& segment, const Strain& strain, std::
   return length;
 }
 
-double length_of(const PathSegment& segment, double nu, const Strain& strain, std::size_t index) {
+double length_of(const PathSegment& segment, double nu, const Strain& strain, std::size_t index, bool portable) {
   const double shear = deviatoric_norm(segment.direction.tensor);
   const double volume = segment.direction.tensor.trace();
   const double scale = segment.direction.tensor.norm();
@@ -82,7 +83,8 @@ double length_of(const PathSegment& segment, double nu, const Strain& strain, st
   }
   if (std::abs(volume) < 1e-12 * scale)
     refuse(index, "extent", "target_nu cannot be reached at constant volume; give eps_dev");
-  const double length = -std::log(segment.extent / nu) / volume;
+  const double ratio = segment.extent / nu;
+  const double length = -(portable ? portable::log(ratio) : std::log(ratio)) / volume;
   if (!(length > 0)) {
     refuse(index, "extent",
            fmt::format("target_nu {} lies behind nu = {:.6g} for this direction; set \"reverse\" or another target",
@@ -103,14 +105,14 @@ void check_segment(const PathSegment& segment, std::size_t index) {
 }
 
 /// The segments up to the first one whose end only the law knows.
-std::vector<StraightSegment> resolve_known(const Path& path) {
+std::vector<StraightSegment> resolve_known(const Path& path, bool portable = false) {
   std::vector<StraightSegment> segments;
   double nu = path.nu;
   Strain strain;
   check_nu(nu, "initial.nu");
   for (std::size_t i = 0; i < path.segments.size(); ++i) {
     if (law_decides(path.segments[i])) break;
-    segments.push_back(resolve(path.segments[i], i, nu, strain));
+    segments.push_back(resolve(path.segments[i], i, nu, strain, portable));
     nu = segments.back().nu(segments.back().length);
     strain = segments.back().strain(segments.back().length);
   }
@@ -170,7 +172,10 @@ StrainRate direction_of(Mode mode, const std::string& axes, bool reverse) {
   return rate;
 }
 
-double StraightSegment::nu(double e) const { return nu_start * std::exp(-eps_vol_rate() * e); }
+double StraightSegment::nu(double e) const {
+  const double x = -eps_vol_rate() * e;
+  return nu_start * (portable ? portable::exp(x) : std::exp(x));
+}
 
 Strain StraightSegment::strain(double e) const { return {strain_start.tensor + e * direction.tensor}; }
 
@@ -178,7 +183,7 @@ double StraightSegment::eps_dev_rate() const { return deviatoric_norm(direction.
 
 double StraightSegment::eps_vol_rate() const { return direction.tensor.trace(); }
 
-StraightSegment resolve(const PathSegment& segment, std::size_t index, double nu, const Strain& strain) {
+StraightSegment resolve(const PathSegment& segment, std::size_t index, double nu, const Strain& strain, bool portable) {
   check_segment(segment, index);
   if (law_decides(segment)) {
     throw InvalidInput(fmt::format(
@@ -186,14 +191,14 @@ StraightSegment resolve(const PathSegment& segment, std::size_t index, double nu
         "elsewhere give strains, e.g. those of a prediction as strain_csv",
         index, segment.conditions.empty() ? to_string(segment.extent_kind) : std::string("free")));
   }
-  StraightSegment straight{segment.mode, segment.direction, length_of(segment, nu, strain, index), nu,
-                           strain,       segment.spin};
+  StraightSegment straight{segment.mode, segment.direction, length_of(segment, nu, strain, index, portable), nu, strain,
+                           segment.spin, portable};
   check_nu(straight.nu(straight.length), fmt::format("segments[{}]", index));
   return straight;
 }
 
-std::vector<StraightSegment> resolve(const Path& path) {
-  std::vector<StraightSegment> segments = resolve_known(path);
+std::vector<StraightSegment> resolve(const Path& path, bool portable) {
+  std::vector<StraightSegment> segments = resolve_known(path, portable);
   if (segments.size() < path.segments.size()) resolve(path.segments[segments.size()], segments.size(), path.nu, {});
   return segments;
 }

@@ -79,6 +79,7 @@ struct StraightSegment {
   double nu_start = 0;   ///< volume fraction at e = 0 [-]
   Strain strain_start;   ///< total logarithmic strain at e = 0, counted from the start of the path [-]
   Eigen::Matrix3d spin = Eigen::Matrix3d::Zero();  ///< W: rotation per unit of e, antisymmetric [-]
+  bool portable = false;  ///< what follows from it is the same bits on every machine (model/vocabulary/portable.hpp)
 
   double nu(double e) const;      ///< volume fraction at path parameter e [-]
   Strain strain(double e) const;  ///< total strain at e [-]; segments add logarithmic strains (exact for coaxial paths)
@@ -91,10 +92,11 @@ inline constexpr double kMaxVolumeFraction = 0.9;  ///< beyond it overlaps are n
 /// Resolves every extent. Throws InvalidInput naming the segment when an extent cannot be reached by its direction
 /// (deviatoric extent of ISO, volumetric extent of D2, wrong sign of a target), is not finite or not positive, when
 /// nu leaves (0, 0.9], or when the law decides where the segment leads.
-std::vector<StraightSegment> resolve(const Path& path);
+std::vector<StraightSegment> resolve(const Path& path, bool portable = false);
 
 /// One segment, `index` for messages, that starts at `nu` and `strain`.
-StraightSegment resolve(const PathSegment& segment, std::size_t index, double nu, const Strain& strain);
+StraightSegment resolve(const PathSegment& segment, std::size_t index, double nu, const Strain& strain,
+                        bool portable = false);
 
 /// Throws InvalidInput, as resolve() does, for whatever is wrong about a path without asking the law.
 void check(const Path& path);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "model/vocabulary/portable.hpp"
+
 namespace grainlaw {
 namespace {
 
@@ -28,13 +30,13 @@ double shape_factor(const Eigen::Matrix3d& a) {
   return ascending(1) / ascending(2);
 }
 
-double lode_angle(const Eigen::Matrix3d& a) {
+double lode_angle(const Eigen::Matrix3d& a, bool portable) {
   const Eigen::Matrix3d dev = traceless(a);
   if (!has_deviator(a, dev)) return kNaN;
   const double j2 = 0.5 * dev.squaredNorm();
   const double j3 = dev.determinant();
-  const double cosine = 1.5 * std::numbers::sqrt3 * j3 / (j2 * std::sqrt(j2));
-  return std::acos(std::clamp(cosine, -1.0, 1.0)) / 3 * 180 / std::numbers::pi;
+  const double cosine = std::clamp(1.5 * std::numbers::sqrt3 * j3 / (j2 * std::sqrt(j2)), -1.0, 1.0);
+  return (portable ? portable::acos(cosine) : std::acos(cosine)) / 3 * 180 / std::numbers::pi;
 }
 
 }  // namespace grainlaw

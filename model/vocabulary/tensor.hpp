@@ -62,6 +62,6 @@ double shape_factor(const Eigen::Matrix3d& a);
 
 /// Lode angle theta = acos((3 sqrt3/2) J3/J2^(3/2))/3 in degrees, 0..60, NaN without deviator (Table 1:
 /// D3 and UNI 60, D2 30, reversed 0). Give tension-positive tensors.
-double lode_angle(const Eigen::Matrix3d& a);
+double lode_angle(const Eigen::Matrix3d& a, bool portable = false);
 
 }  // namespace grainlaw

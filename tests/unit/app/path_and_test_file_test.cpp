@@ -257,6 +257,42 @@ TEST_F(PathFiles, TestsStartWhereTheySay) {
   EXPECT_EQ(digest.size(), 64u);
 }
 
+// What a packing that is given is made of stands in what gives it; a key that nobody reads must not look as if it were.
+TEST_F(PathFiles, KeysThatAGivenPackingDoesNotReadAreRefused) {
+  put("s.csv", "id,x,y,z,r\n0,0.001,0.001,0.001,0.001\n1,0.005,0.001,0.001,0.001\n");
+  const std::string cell = R"("cell": [[0.01,0,0],[0,0.01,0],[0,0,0.01]])";
+  const auto spheres = dem::read_test(put("t.json", R"({"spheres": "s.csv", "stiffness": 2e8, )" + cell + "}"));
+  EXPECT_EQ(spheres.given->material.stiffness, 2e8);
+  dem::write_state(folder_ / "a.state", *spheres.given);
+  for (const char* key : {"density", "stiffness", "contact_viscosity", "background_viscosity"}) {
+    const std::string message = test_refusal(fmt::format(R"({{"state": "a.state", "{}": 3}})", key));
+    EXPECT_NE(message.find(fmt::format("t.json: {}: is not read, the state has its own; remove it, or give", key)),
+              std::string::npos)
+        << message;
+  }
+  for (const char* key : {"particles", "mean_radius", "size_width", "seed"}) {
+    for (const std::string& given : {std::string(R"("state": "a.state")"), R"("spheres": "s.csv", )" + cell}) {
+      const std::string message = test_refusal(fmt::format(R"({{{}, "{}": 3}})", given, key));
+      EXPECT_NE(message.find(fmt::format("t.json: {}: belongs to a packing that is made", key)), std::string::npos)
+          << message;
+    }
+  }
+  EXPECT_NE(test_refusal(R"({"state": "a.state", "nu_max": 0.8})").find("t.json: nu_max: belongs to"),
+            std::string::npos);
+}
+
+// numpy writes the -0.0 that it computes.
+TEST_F(PathFiles, NegativeZeroOfATensorIsZero) {
+  const PathFile read = read_path(put("p.json", R"({"initial": {"nu": 0.7}, "segments": [{"rate_tensor":
+      [[-0.0, 0.0, -0.0], [0.0, 1.0, 0.0], [-0.0, 0.0, -1.0]], "extent": {"eps_dev": 0.1}},
+      {"velocity_gradient": [[-0, 0, 0], [0, 1, -0.0], [0, 0, -1]], "extent": {"eps_dev": 0.1}}]})"));
+  for (const PathSegment& segment : read.path.segments) {
+    EXPECT_EQ(segment.direction.tensor, direction_of(Mode::D2, "yxz", false).tensor);
+    for (const double component : segment.direction.tensor.reshaped())
+      EXPECT_FALSE(component == 0 && std::signbit(component));
+  }
+}
+
 TEST_F(PathFiles, TestsThatContradictThemselvesAreRefused) {
   const std::string uni = R"("segments": [{"mode": "UNI", "extent": {"eps_dev": 0.1}}])";
   EXPECT_NE(test_refusal("{" + uni + "}").find("t.json: segments: start nowhere"), std::string::npos);

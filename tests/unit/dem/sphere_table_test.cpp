@@ -92,9 +92,9 @@ TEST_F(SphereTable, ReadsBackWhatItWrote) {
 }
 
 TEST_F(SphereTable, RefusesABrokenHeader) {
-  EXPECT_REFUSED("", "row 1", "empty");
-  EXPECT_REFUSED("1,0.001,0.002,0.003,0.001\n", "row 1", "no column");
-  EXPECT_REFUSED("id;x;y;z;r\n1;0;0;0;1\n", "row 1", "commas");
+  EXPECT_REFUSED("", "line 1", "empty");
+  EXPECT_REFUSED("1,0.001,0.002,0.003,0.001\n", "line 1", "no column");
+  EXPECT_REFUSED("id;x;y;z;r\n1;0;0;0;1\n", "line 1", "commas");
   EXPECT_REFUSED("id,x,y,z\n1,0,0,0\n", "column r", "missing");
   EXPECT_REFUSED("id,x,y,z,r,x\n", "column x", "twice");
   EXPECT_REFUSED("id,x,y,z,r,mass\n", "'mass'", "no column");
@@ -102,32 +102,32 @@ TEST_F(SphereTable, RefusesABrokenHeader) {
   EXPECT_REFUSED("id,x,y,z,r,vx\n", "vx, vy, vz", "all three");
   std::string columns = "id";
   for (int i = 0; i < 400000; ++i) columns += ",x";
-  EXPECT_REFUSED(columns + "\n", "row 1", "twice");
+  EXPECT_REFUSED(columns + "\n", "line 1", "twice");
 }
 
 TEST_F(SphereTable, RefusesABrokenRow) {
   const std::string header = "id,x,y,z,r\n1,0,0,0,0.001\n";
-  EXPECT_REFUSED(header + "2,0,0,0\n", "row 3", "4 fields");
-  EXPECT_REFUSED(header + "2,0,0,0,0.001,7\n", "row 3", "6 fields");
-  EXPECT_REFUSED(header + "2,0,005,0,0,0,001\n", "row 3", "decimal comma");
-  EXPECT_REFUSED(header + "2,nan,0,0,0.001\n", "row 3, column x", "not finite");
-  EXPECT_REFUSED(header + "2,0,-inf,0,0.001\n", "row 3, column y", "not finite");
-  EXPECT_REFUSED(header + "2,0,0,1e999,0.001\n", "row 3, column z", "no number");
-  EXPECT_REFUSED(header + "2,0,0,0x10,0.001\n", "row 3, column z", "no number");
-  EXPECT_REFUSED(header + "2,0,,0,0.001\n", "row 3, column y", "no number");
-  EXPECT_REFUSED(header + "2.5,0,0,0,0.001\n", "row 3, column id", "no integer");
-  EXPECT_REFUSED(header + "99999999999999999999,0,0,0,0.001\n", "row 3, column id", "no integer");
-  EXPECT_REFUSED(header + "1,0.005,0,0,0.001\n", "row 3, column id", "already in row 2");
-  EXPECT_REFUSED(header + "2,0,0,0,0\n", "row 3, column r", "not positive");
-  EXPECT_REFUSED(header + "2,0,0,0,-0.001\n", "row 3, column r", "not positive");
-  EXPECT_REFUSED(header + std::string("2,0,0,0,0.0\0001\n", 14), "row 3", "NUL");
-  EXPECT_REFUSED(header + "\n2,0,0,0,0.001\n", "row 4", "empty row");
-  EXPECT_REFUSED(header + "2,1e6,0,0,0.001\n", "row 3", "metres");
-  EXPECT_REFUSED(header + std::string(1'100'000, '1') + "\n", "row 3", "1 MB");
+  EXPECT_REFUSED(header + "2,0,0,0\n", "line 3", "4 fields");
+  EXPECT_REFUSED(header + "2,0,0,0,0.001,7\n", "line 3", "6 fields");
+  EXPECT_REFUSED(header + "2,0,005,0,0,0,001\n", "line 3", "decimal comma");
+  EXPECT_REFUSED(header + "2,nan,0,0,0.001\n", "line 3, column x", "not finite");
+  EXPECT_REFUSED(header + "2,0,-inf,0,0.001\n", "line 3, column y", "not finite");
+  EXPECT_REFUSED(header + "2,0,0,1e999,0.001\n", "line 3, column z", "no number");
+  EXPECT_REFUSED(header + "2,0,0,0x10,0.001\n", "line 3, column z", "no number");
+  EXPECT_REFUSED(header + "2,0,,0,0.001\n", "line 3, column y", "no number");
+  EXPECT_REFUSED(header + "2.5,0,0,0,0.001\n", "line 3, column id", "no integer");
+  EXPECT_REFUSED(header + "99999999999999999999,0,0,0,0.001\n", "line 3, column id", "no integer");
+  EXPECT_REFUSED(header + "1,0.005,0,0,0.001\n", "line 3, column id", "already in line 2");
+  EXPECT_REFUSED(header + "2,0,0,0,0\n", "line 3, column r", "not positive");
+  EXPECT_REFUSED(header + "2,0,0,0,-0.001\n", "line 3, column r", "not positive");
+  EXPECT_REFUSED(header + std::string("2,0,0,0,0.0\0001\n", 14), "line 3", "NUL");
+  EXPECT_REFUSED(header + "\n2,0,0,0,0.001\n", "line 4", "empty line");
+  EXPECT_REFUSED(header + "2,1e6,0,0,0.001\n", "line 3", "metres");
+  EXPECT_REFUSED(header + std::string(1'100'000, '1') + "\n", "line 3", "1 MB");
 }
 
 TEST_F(SphereTable, RefusesWhatIsNoPacking) {
-  EXPECT_REFUSED("id,x,y,z,r\n", "row 1", "no spheres");
+  EXPECT_REFUSED("id,x,y,z,r\n", "line 1", "no spheres");
   EXPECT_REFUSED("id,x,y,z,r\n1,0,0,0,1\n", "radius 1", "metres");
   EXPECT_REFUSED("id,x,y,z,r\n1,0,0,0,0.009\n", "fill", "metres");
   put(kGood);

@@ -95,32 +95,32 @@ TEST(DataSet, NamesTestRowAndColumnOfABadNumber) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     std::vector<TestRecord> tests = small_set();
     tests[1].rows[3].stress.tensor(1, 2) = bad;
-    expect_refusal(tests, {tests[1].name, "row 3", "stress_yz"});
+    expect_refusal(tests, {tests[1].name, "row 4", "stress_yz"});
     tests = small_set();
     tests[2].rows[5].fabric.tensor(0, 0) = bad;
-    expect_refusal(tests, {tests[2].name, "row 5", "fabric_xx"});
+    expect_refusal(tests, {tests[2].name, "row 6", "fabric_xx"});
     tests = small_set();
     tests[0].rows[0].nu = bad;
-    expect_refusal(tests, {tests[0].name, "row 0", "nu"});
+    expect_refusal(tests, {tests[0].name, "row 1", "nu"});
   }
 }
 
 TEST(DataSet, NoticesUnitsAndSwappedColumns) {
   std::vector<TestRecord> tests = small_set();
   for (Observation& row : tests[1].rows) row.stress.tensor *= 1000;  // kPa read as Pa
-  expect_refusal(tests, {tests[1].name, "row 0", "P_star", "units"});
+  expect_refusal(tests, {tests[1].name, "row 1", "P_star", "units"});
   tests = small_set();
   for (Observation& row : tests[1].rows) std::swap(row.P_star, row.nu);
-  expect_refusal(tests, {tests[1].name, "row 0"});
+  expect_refusal(tests, {tests[1].name, "row 1"});
   tests = small_set();
   tests[1].rows[4].nu *= 1.001;
-  expect_refusal(tests, {tests[1].name, "row 4", "nu", "strain"});
+  expect_refusal(tests, {tests[1].name, "row 5", "nu", "strain"});
   tests = small_set();
   tests[1].rows[4].F_v *= 2;
-  expect_refusal(tests, {tests[1].name, "row 4", "F_v"});
+  expect_refusal(tests, {tests[1].name, "row 5", "F_v"});
   tests = small_set();
   for (Observation& row : tests[1].rows) row.mean_overlap *= 1000;  // hard case F7 has the rest
-  expect_refusal(tests, {tests[1].name, "row 0", "P_star", "mean overlap", "units"});
+  expect_refusal(tests, {tests[1].name, "row 1", "P_star", "mean overlap", "units"});
 }
 
 TEST(DataSet, RefusesSpin) {
@@ -138,7 +138,7 @@ TEST(DataSet, NoticesATestGivenTwice) {
   tests.back().rows.pop_back();
   EXPECT_EQ(refusal_of_tests(tests), "accepted") << "two runs of one packing may go the same way for a while";
   tests.back().packing.seed += 1;
-  expect_refusal(tests, {"another", "row 0", tests[1].name, "seeds differ"});
+  expect_refusal(tests, {"another", "row 1", tests[1].name, "seeds differ"});
   tests = small_set();
   tests.push_back(tests[0]);  // ends unjammed
   tests.back().name = "another";
@@ -154,7 +154,7 @@ TEST(DataSet, RefusesEmptyAndMisshapenTests) {
   expect_refusal(tests, {tests[1].name, "mean_radius"});
   tests = small_set();
   tests[2].rows[3].segment = 7;
-  expect_refusal(tests, {tests[2].name, "row 3", "segment"});
+  expect_refusal(tests, {tests[2].name, "row 4", "segment"});
 }
 
 }  // namespace

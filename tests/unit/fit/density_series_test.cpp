@@ -79,7 +79,7 @@ TEST(DensitySeries, MissingCoordinationOfAJammedRowIsNamed) {
   } catch (const InvalidInput& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find(tests[0].name), std::string::npos) << message;
-    EXPECT_NE(message.find("row 7, column C_star"), std::string::npos) << message;
+    EXPECT_NE(message.find("row 8, column C_star"), std::string::npos) << message;
   }
 }
 

@@ -139,7 +139,7 @@ TEST(Trajectory, RowsOffThePathAreNamed) {
     trajectories_of(check_and_sort(tests), 0.6649, {});
     FAIL() << "accepted";
   } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find("row 4"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("row 5"), std::string::npos) << error.what();
   }
 }
 

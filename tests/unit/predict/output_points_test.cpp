@@ -98,7 +98,7 @@ TEST(PointsOf, NamesTheRowThatIsWrong) {
     return refusal(test);
   };
   const auto names = [](const std::string& message, std::size_t row) {
-    return message.find("made-up: row " + std::to_string(row) + ":") != std::string::npos;
+    return message.find("made-up: row " + std::to_string(row + 1) + ":") != std::string::npos;
   };
   EXPECT_EQ(refusal(record()), "");
   EXPECT_TRUE(names(with(3, [](Observation& o) { o.strain.tensor(0, 0) += 1e-6; }), 3)) << "off the path";
@@ -115,14 +115,14 @@ TEST(PointsOf, NamesTheRowThatIsWrong) {
 TEST(PointsOf, RowsThatRunBackAreRefused) {
   TestRecord test = record();
   std::swap(test.rows[1].strain, test.rows[2].strain);
-  EXPECT_NE(refusal(test).find("row 2"), std::string::npos);
+  EXPECT_NE(refusal(test).find("row 3"), std::string::npos);
 }
 
 TEST(PointsOf, RowsBeyondTheEndAreRefused) {
   TestRecord test = record();
   const auto last = resolve(test.path).back();
   test.rows.back().strain = last.strain(last.length + 1e-6);
-  EXPECT_NE(refusal(test).find("row 14"), std::string::npos);
+  EXPECT_NE(refusal(test).find("row 15"), std::string::npos);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ std::optional<std::size_t> row_of_stop(const State& start, const std::vector<Str
     if (message.find("crosses more than an eighth of the cell") != std::string::npos) return 0;
     const std::size_t row = message.find(" at row ");
     EXPECT_NE(row, std::string::npos) << message;
-    return std::stoul(message.substr(row + 8));
+    return std::stoul(message.substr(row + 8)) - 1;  // counted from 1
   }
   return std::nullopt;
 }

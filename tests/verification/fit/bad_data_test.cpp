@@ -65,7 +65,7 @@ const std::vector<Throw>& throws() {
        }},
       {"rattler_fraction",
        [](Observation& o, double by) {
-         o.rattler_fraction += 0.3 * by;
+         o.rattler_fraction += 0.3 * (o.rattler_fraction + 0.3 * by < 0 ? -by : by);  // below 0 it would be refused
          o.C = (1 - o.rattler_fraction) * o.C_star;
        }},
       {"s_par",
@@ -114,7 +114,7 @@ TEST(BadData, F7OutliersAreFlaggedByTestAndColumn) {
           flagged = flagged || right;
           falsely += !names(w, "test " + tests[k].name + ":");
           if (right && count == 1) {
-            EXPECT_TRUE(names(w, "row " + std::to_string(rows[0]) + ")")) << w;
+            EXPECT_TRUE(names(w, "row " + std::to_string(rows[0] + 1) + ")")) << w;
           }
         }
         EXPECT_TRUE(flagged) << tests[k].name << " " << column << " " << part;
@@ -177,9 +177,9 @@ TEST(BadData, F7RunsCountedTwiceAreRefused) {
     tests.back().packing.seed = 99;
     expect_refusal(tests, "test copy: holds the same series as test " + tests[k].name);
     tests.back().rows.erase(tests.back().rows.begin() + 5);
-    expect_refusal(tests, "test copy: row 0");
+    expect_refusal(tests, "test copy: row 1");
     tests.back().rows.erase(tests.back().rows.begin() + 8, tests.back().rows.end());
-    expect_refusal(tests, "test copy: row 0");
+    expect_refusal(tests, "test copy: row 1");
   }
   std::vector<TestRecord> everything = records();
   for (const TestRecord& test : records()) {

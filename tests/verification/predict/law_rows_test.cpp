@@ -107,7 +107,7 @@ TEST(Rows, O10WhatIsOutOfOrderIsRefusedByName) {
   const auto with = [&](std::size_t row, const std::function<void(Observation&)>& change) {
     TestRecord changed = test;
     change(changed.rows[row]);
-    expect_refusal([&] { predict::points_of(changed); }, "made-up: row " + std::to_string(row) + ":");
+    expect_refusal([&] { predict::points_of(changed); }, "made-up: row " + std::to_string(row + 1) + ":");
   };
   for (std::size_t row = 0; row < test.rows.size(); ++row) {
     with(row, [](Observation& o) { o.time = kNaN; });
@@ -117,7 +117,7 @@ TEST(Rows, O10WhatIsOutOfOrderIsRefusedByName) {
   }
   TestRecord unsorted = test;
   std::swap(unsorted.rows[2].strain, unsorted.rows[3].strain);
-  expect_refusal([&] { predict::points_of(unsorted); }, "made-up: row 3:");
+  expect_refusal([&] { predict::points_of(unsorted); }, "made-up: row 4:");
   expect_figure("O10.not_refused_by_name", unnamed, 0);
 }
 
