@@ -9,6 +9,11 @@
 #include "packing_prior_text.hpp"
 
 namespace grainlaw::fit {
+namespace {
+
+constexpr double kSymmetric = 1e-9;  // of a correlation: sums in another order
+
+}  // namespace
 
 OrderedJson prior_to_json(const VariancePrior& prior) {
   OrderedJson names = OrderedJson::array(), degrees = OrderedJson::array(), matrix = OrderedJson::array();
@@ -50,9 +55,13 @@ VariancePrior prior_from_json(const Json& json, const std::string& name) {
       if (!(prior.degrees_of_freedom(k) > 0)) refuse(fmt::format("degrees_of_freedom[{}]: must be positive", i));
       for (std::size_t j = 0; j < names.size(); ++j) {
         prior.covariance(k, static_cast<Eigen::Index>(parameter_index(names[j]))) = matrix.at(i).at(j);
-        if (matrix.at(i).at(j) != matrix.at(j).at(i)) refuse(fmt::format("covariance[{}][{}]: is not symmetric", i, j));
+        const double one = matrix.at(i).at(j), other = matrix.at(j).at(i);
+        if (std::abs(one - other) >
+            kSymmetric * std::sqrt(std::abs(matrix.at(i).at(i).get<double>() * matrix.at(j).at(j).get<double>())))
+          refuse(fmt::format("covariance[{}][{}]: is not symmetric", i, j));
       }
     }
+    prior.covariance = ((prior.covariance + prior.covariance.transpose()) / 2).eval();
     if (!(prior.size.spheres > 0 && prior.size.packings > 1)) refuse("packings and spheres must be positive");
   } catch (const Json::exception& error) {
     refuse(error.what());

@@ -11,7 +11,6 @@
 #include <thread>
 #include <utility>
 
-#include "fit/calibrate.hpp"
 #include "model/student.hpp"
 #include "model/vocabulary/error.hpp"
 

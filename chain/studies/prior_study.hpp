@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fit/statistics/variance_prior.hpp"
+#include "fit/calibrate.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/execution.hpp"
 #include "model/vocabulary/fields.hpp"

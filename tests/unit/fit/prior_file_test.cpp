@@ -48,5 +48,16 @@ TEST(PriorFile, IsRefusedByTheNameOfWhatIsWrong) {
   EXPECT_NE(message_of("spheres", 0).find("spheres"), std::string::npos);
 }
 
+TEST(PriorFile, TheBuiltInOneKnowsEveryStage) {
+  const VariancePrior& prior = shipped_prior();
+  for (const char* name : {"coordination.nu_c", "rattlers.phi_v", "pressure.nu_c", "steady_pressure.nu_c",
+                           "stress_ratio_max.Q_c", "stress_rate.Q_c", "anisotropy.a2", "memory.lambda"}) {
+    const auto k = static_cast<Eigen::Index>(parameter_index(name));
+    EXPECT_GT(prior.covariance(k, k), 0) << name;
+    EXPECT_GT(prior.degrees_of_freedom(k), 0) << name;
+    EXPECT_LT(prior.degrees_of_freedom(k), prior.size.packings) << name;
+  }
+}
+
 }  // namespace
 }  // namespace grainlaw::fit
