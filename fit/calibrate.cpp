@@ -97,8 +97,8 @@ void moderate_errors(const CalibrationOptions& options, Calibration& calibration
   }
   if (size.spheres < kLeastParticles * static_cast<double>(size.packings))
     calibration.warnings.push_back(fmt::format(
-        "packings of {:.0f} spheres: what a size below {:.0f} biases is in no interval (nu_c and gamma_p of "
-        "P* first: docs/theory/fit.md, Moderated variances)",
+        "packings of {:.0f} spheres: what a size below {:.0f} biases is in no interval (jamming "
+        "densities first: docs/theory/fit.md, Moderated variances)",
         size.spheres / size.packings, kLeastParticles));
 }
 
