@@ -10,6 +10,7 @@
 #include "fit/calibration_file.hpp"
 #include "fit/describe.hpp"
 #include "fit/leave_one_out.hpp"
+#include "fit/prior_file.hpp"
 #include "fit/published/verdicts.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output.hpp"
@@ -130,6 +131,7 @@ CalibrationInput read_calibration_input(const fs::path& spec, const fs::path& da
 fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Execution& execution) {
   fit::CalibrationOptions options;
   options.threads = execution.threads;
+  options.prior = fit::shipped_prior();
   if (input.spec) options.coupling = value_of<Coupling>(input.spec->coupling, "coupling");
   return options;
 }

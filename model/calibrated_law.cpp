@@ -37,11 +37,28 @@ bool without_exponential(const CalibratedLaw& law, std::size_t i) {
   return has_value(law, Q_c) && *fields(law.parameters)[Q_c] == 0;
 }
 
+constexpr double kPlausibleJamming = 0.02;  // random packings of spheres jam within .64 ... .68
+
+/// How large a parameter is when nothing is known of it.
+double plausible_size(std::size_t i) {
+  const ParameterInfo& info = parameter_table()[i];
+  const std::string name = info.name;
+  if (name.ends_with(".nu_c")) return kPlausibleJamming;
+  if (name.ends_with(".Q_limit")) return parameter_table()[i + 1].start;
+  return info.start != 0 ? std::abs(info.start) : std::min(1.0, info.upper);
+}
+
 }  // namespace
 
 double Estimate::half_width() const {
   if (!std::isfinite(standard_error) || std::isnan(degrees_of_freedom)) return std::nan("");
   return student_95(degrees_of_freedom) * standard_error;
+}
+
+bool says_nothing(const CalibratedLaw& law, std::size_t parameter) {
+  const Estimate& e = law.estimates[parameter];
+  const bool of_jamming = std::string_view(parameter_table()[parameter].name).ends_with(".nu_c");
+  return e.half_width() > std::max(of_jamming ? 0 : std::abs(e.value), plausible_size(parameter));
 }
 
 bool has_values(const CalibratedLaw& law, std::string_view group) {

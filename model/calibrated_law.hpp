@@ -67,6 +67,10 @@ struct CalibratedLaw {
   std::vector<Rehearsal> rehearsals;  ///< paths that no fit saw, each with how far the law is off; may be none
 };
 
+/// Whether the 95 % interval of the parameter says nothing: its half width is more than the parameter's own value and more
+/// than its plausible size (where a fit would start; of Q_limit that of its Q_c; of a jamming density .02).
+bool says_nothing(const CalibratedLaw& law, std::size_t parameter);
+
 /// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
 bool has_values(const CalibratedLaw& law, std::string_view group);
 

@@ -138,5 +138,22 @@ TEST(Status, IsFoundByItsName) {
             "status: 'sure' is none; give one of fitted, fixed, tied, at_bound, not_identified");
 }
 
+TEST(CalibratedLaw, AnIntervalSaysNothingThatIsWiderThanTheParameterMayBe) {
+  CalibratedLaw law;
+  const auto with = [&](const char* name, double value, double half_width) {
+    const std::size_t i = parameter_index(name);
+    law.estimates[i] = {value, half_width / student_95(1), Status::fitted, "", 1};
+    return says_nothing(law, i);
+  };
+  EXPECT_TRUE(with("stress_rate.alpha", 2, 1225));
+  EXPECT_FALSE(with("stress_rate.alpha", 2, 9)) << "contains zero, but not 11 and more";
+  EXPECT_FALSE(with("stress_rate.alpha", 40, 39));
+  EXPECT_TRUE(with("pressure.nu_c", 0.66, 0.021));
+  EXPECT_FALSE(with("pressure.nu_c", 0.66, 0.019));
+  EXPECT_FALSE(with("fabric_max.Q_limit", 0.01, 0.09)) << "as large as its Q_c may be";
+  law.estimates[0] = {8, std::nan(""), Status::fixed, ""};
+  EXPECT_FALSE(says_nothing(law, 0)) << "no interval";
+}
+
 }  // namespace
 }  // namespace grainlaw
