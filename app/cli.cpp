@@ -61,7 +61,9 @@ constexpr std::array kStudies{
     Command{"dem", "what settings of the engine cost and how far they are from a reference", declare_study_dem, true},
     Command{"fit", "what a fit loses that leaves out a part of the data; runs no DEM", declare_study_fit, false},
     Command{"chain", "what settings from packings to a prediction cost and how far it is from that of a reference",
-            declare_study_chain, true}};
+            declare_study_chain, true},
+    Command{"bands", "whether bands hold on rehearsals that are left out of them", declare_study_bands, false},
+    Command{"prior", "what many packings say of the errors of few; runs no DEM", declare_study_prior, false}};
 
 /// Declares `command` below `app`; when it is the one that is given, `chosen` becomes its task.
 void add(CLI::App& app, const Command& command, Common& common, Task& chosen) {
@@ -118,7 +120,8 @@ int run(int argc, char** argv) {
   Common common;
   Task task;
   for (const Command& command : kCommands) add(app, command, common, task);
-  CLI::App* study = app.add_subcommand("study", "measurements of the program itself: integrator, dem, fit, chain");
+  CLI::App* study =
+      app.add_subcommand("study", "measurements of the program itself: integrator, dem, fit, chain, bands, prior");
   study->require_subcommand(1);
   study->footer(kExitCodes);
   for (const Command& command : kStudies) add(*study, command, common, task);

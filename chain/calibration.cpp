@@ -6,9 +6,11 @@
 #include <fstream>
 #include <iterator>
 
+#include "chain/rehearsals.hpp"
 #include "fit/calibration_file.hpp"
 #include "fit/describe.hpp"
 #include "fit/leave_one_out.hpp"
+#include "fit/prior_file.hpp"
 #include "fit/published/verdicts.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output.hpp"
@@ -77,14 +79,15 @@ std::vector<TestRecord> described_tests(const Dataset& dataset) {
 }
 
 /// The law and what it is compared with; calibration.json and parameters.json.
-fit::Calibration fit_and_save(const Dataset& dataset, const fit::CalibrationOptions& options, const fs::path& output,
-                              const Execution& execution) {
+fit::Calibration fit_and_save(const Dataset& dataset, const fs::path& folder, const fit::CalibrationOptions& options,
+                              const fs::path& output, const Execution& execution) {
   Watch& watch = execution.watch;
   const auto control = [&](const char* stage) { return watch.control(0, stage, execution.stop); };
   watch.begin({1}, "");
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
   fit::Calibration calibration = fit::calibrate(tests, options, control("fit"));
   calibration.law.dataset_digest = dataset.digest;
+  rehearse(calibration.law, rehearsals_of(dataset, folder), execution);
   if (options.profiles) calibration.left_out = fit::leave_one_out(tests, options, control("fit without one packing"));
   fit::ModeComparison modes;
   modes.descriptions = fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c,
@@ -128,6 +131,7 @@ CalibrationInput read_calibration_input(const fs::path& spec, const fs::path& da
 fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Execution& execution) {
   fit::CalibrationOptions options;
   options.threads = execution.threads;
+  options.prior = fit::shipped_prior();
   if (input.spec) options.coupling = value_of<Coupling>(input.spec->coupling, "coupling");
   return options;
 }
@@ -151,12 +155,13 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
   CalibrationResult result;
   if (input.dataset) {
     result.dataset = adopt(*input.dataset, input.dataset_folder, folder);
+    adopt_rehearsals(input.dataset_folder, folder);
     log_warnings(result.dataset, execution.watch);
   } else {
     result.dataset = simulate_data_set(*input.spec, folder, output, execution, result.counts);
   }
   const Stopwatch stopwatch;
-  result.calibration = fit_and_save(result.dataset, options, output, execution);
+  result.calibration = fit_and_save(result.dataset, folder, options, output, execution);
   result.fit_seconds = stopwatch.seconds();
   return result;
 }

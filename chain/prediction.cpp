@@ -1,7 +1,10 @@
 #include "chain/prediction.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
 
@@ -71,6 +74,20 @@ struct Law {
   }
 };
 
+/// `curve.prediction` by `predicted`; false, with an entry in the failures, where the law does not converge: one rung must
+/// not take the others with it.
+bool add_curve(predict::PredictedCurve curve, const std::function<predict::Prediction()>& predicted,
+               predict::PredictionFolder& content) {
+  try {
+    curve.prediction = predicted();
+  } catch (const NotConverged& error) {
+    content.failures.push_back({curve.model, curve.initial, curve.seed, error.what()});
+    return false;
+  }
+  content.curves.push_back(std::move(curve));
+  return true;
+}
+
 /// What `start` gives; its refusal under the name of the file, key or row that it came from.
 template <class Start>
 auto named(const std::string& name, const Start& start) {
@@ -98,8 +115,9 @@ void check_starts(const PredictionInput& input) {
 /// Curves at equal steps, from the law's own start.
 void add_free_curves(const Law& law, predict::PredictionFolder& content) {
   for (const Rung model : law.rungs) {
-    content.curves.push_back(
-        {model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), law.at_equal_steps(model)});
+    add_curve(
+        {model, Initial::law, std::nullopt, fmt::format("{}-law.csv", to_string(model)), {}},
+        [&] { return law.at_equal_steps(model); }, content);
   }
 }
 
@@ -112,11 +130,12 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
       for (const Initial initial : initials_of(input)) {
         const auto start = initial == Initial::law ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
                                                    : measured_start(test.record);
-        predict::PredictedCurve curve{model, initial, seed,
-                                      fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed),
-                                      law.along(model, initial, start, points)};
-        content.comparisons.push_back({model, initial, seed, predict::compare(curve.prediction, test.record)});
-        content.curves.push_back(std::move(curve));
+        const bool added = add_curve(
+            {model, initial, seed, fmt::format("{}-{}-s{}.csv", to_string(model), to_string(initial), seed), {}},
+            [&] { return law.along(model, initial, start, points); }, content);
+        if (added)
+          content.comparisons.push_back(
+              {model, initial, seed, predict::compare(content.curves.back().prediction, test.record)});
       }
     }
   }
@@ -124,14 +143,26 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
     content.comparisons.push_back(mean);
 }
 
+/// Throws NotConverged with the first failure where no curve is left.
+void require_a_curve(const predict::PredictionFolder& content) {
+  if (content.curves.empty() && !content.failures.empty()) throw NotConverged(content.failures.front().error);
+}
+
 /// Which rung the path needs, and what each richer one changes on the curves from the law's start.
 void add_advice(const Law& law, predict::PredictionFolder& content) {
   // where the law decides where the path leads, two rungs have no rows at the same strain
   if (law_decides(law.path)) {
     content.needed = {Rung::evolution, "the law decides the strain"};
+    content.recommended = {law.rungs.back(), false, "the richest; where the law decides the strain none is rehearsed"};
     return;
   }
   content.needed = predict::rung_needed(law.calibrated.parameters, law.segments);
+  std::vector<Rung> rungs = law.rungs;
+  std::erase_if(rungs, [&](Rung rung) {
+    return std::ranges::find(content.curves, rung, &predict::PredictedCurve::model) == content.curves.end();
+  });
+  if (rungs.empty()) rungs = law.rungs;  // all failed
+  content.recommended = predict::recommended_rung(law.calibrated.rehearsals, law.segments, rungs, content.needed);
   const predict::PredictedCurve* cheaper = nullptr;
   for (const predict::PredictedCurve& curve : content.curves) {
     if (curve.seed) continue;
@@ -142,26 +173,96 @@ void add_advice(const Law& law, predict::PredictionFolder& content) {
   }
 }
 
+/// What rehearsals say of the rungs along the path, and where it goes beyond them.
+void add_rehearsals(const Law& law, predict::PredictionFolder& content) {
+  const Spokesmen spokesmen = spokesmen_for(law.segments, law.calibrated.rehearsals);
+  if (law_decides(law.path) || spokesmen.rehearsals.empty()) return;
+  const double m = static_cast<double>(spokesmen.rehearsals.size());
+  predict::PathRehearsals& said = content.rehearsals.emplace();
+  said.kind = spokesmen.kind;
+  said.paths = static_cast<int>(spokesmen.rehearsals.size());
+  said.of_kind = spokesmen.of_kind;
+  said.outside = ways_outside(traits_of(law.segments), spokesmen);
+  said.whole_curve_probability = m / (m + 1);
+  for (const Rung rung : law.rungs) {
+    const auto of = [&](Rehearsed quantity) {
+      predict::RehearsedError said_of{law_error(spokesmen, rung, quantity), 0};
+      double widest = 0;
+      for (const predict::PredictedCurve& curve : content.curves) {
+        for (const predict::PredictedRow& row : curve.prediction.rows)
+          widest = std::max(widest, error_units(law.calibrated.parameters, row.nu).of(quantity));
+      }
+      said_of.whole_curve = widest * said_of.error.largest;
+      return said_of;
+    };
+    said.models.push_back({rung, of(Rehearsed::P_star), of(Rehearsed::s_par), of(Rehearsed::F_par)});
+  }
+  if (!said.outside.empty()) {
+    content.warnings.push_back(fmt::format("outside rehearsals: {}; how far the law is off there is not known",
+                                           fmt::join(said.outside, ", ")));
+  }
+}
+
+/// What the law does not know of a path, whichever rung.
+void add_path_warnings(predict::PredictionFolder& content) {
+  if (content.path.branch != Branch::unloading) {
+    content.warnings.push_back(fmt::format(
+        "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "
+        "preparation, are those of that branch",
+        to_string(content.path.branch)));
+  }
+}
+
+/// Which bands there are: a path does not speak for itself, so one that alone was rehearsed has none of the law's own error.
+std::string bands_along(const Law& law) {
+  if (law_decides(law.path)) return "none: the law decides the strain";
+  CalibratedLaw known = law.calibrated;
+  if (spokesmen_for(law.segments, known.rehearsals).rehearsals.empty()) known.rehearsals.clear();
+  return available_bands(known);
+}
+
 std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const PredictionInput& input) {
   return plan(runs.spec, input.path, dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name),
               input.path_name);
 }
 
-Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& folder,
+/// What `work` returns; folders that it leaves empty when it throws are removed, `inner` before `outer`.
+template <class Work>
+auto without_empty_folders(const fs::path& inner, const fs::path& outer, const Work& work) {
+  try {
+    return work();
+  } catch (...) {
+    std::error_code not_empty;  // then it stays
+    fs::remove(inner, not_empty);
+    fs::remove(outer, not_empty);
+    throw;
+  }
+}
+
+Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& output,
                   const Execution& execution) {
-  make_output_folder(runs.store);
-  dem::RunCounts counts;
-  return dem::run_planned(planned_runs(runs, input), Json(dem::spec_to_json(runs.spec)), folder,
-                          dem::RunStore(runs.store, "runs"), execution, counts);
+  return without_empty_folders(output / "dem", output, [&] {
+    make_output_folder(output);
+    const fs::path folder = make_subfolder(output, "dem");
+    make_output_folder(runs.store);
+    dem::RunCounts counts;
+    return dem::run_planned(planned_runs(runs, input), Json(dem::spec_to_json(runs.spec)), folder,
+                            dem::RunStore(runs.store, "runs"), execution, counts);
+  });
 }
 
 void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& content, Watch& watch) {
   std::set<std::string> warned;
   if (!law.converged) watch.log("warning: the calibration did not converge");
+  for (const std::string& warning : content.warnings) watch.log("warning: " + warning);
   for (const predict::PredictedCurve& curve : content.curves) {
     for (const std::string& warning : curve.prediction.warnings) {
       if (warned.insert(warning).second) watch.log("warning: " + warning);
     }
+  }
+  for (const predict::FailedCurve& failed : content.failures) {
+    const std::string warning = fmt::format("{} is left out: {}", to_string(failed.model), failed.error);
+    if (warned.insert(warning).second) watch.log("warning: " + warning);
   }
 }
 
@@ -206,21 +307,28 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   check_starts(input);
   if (input.new_runs) planned_runs(*input.new_runs, input);  // likewise what cannot be run
 
-  make_output_folder(output);
   predict::PredictionFolder content;
   content.name = output.filename().string();
   content.path = path;
   content.parameters = input.parameters;
-  if (input.new_runs) content.dem = make_runs(*input.new_runs, input, make_subfolder(output, "dem"), execution);
+  content.bands = bands_along(law);
+  // all that can fail comes before the first file
+  if (input.initial != Initial::measured) add_free_curves(law, content);
+  require_a_curve(content);
+  if (input.finished_runs) content.dem = input.finished_runs->dataset;
+  if (input.new_runs) content.dem = make_runs(*input.new_runs, input, output, execution);
+  if (content.dem) add_compared_curves(law, input, content);
+  if (!input.new_runs) require_a_curve(content);  // runs that were made stay, with what became of the law
+  add_advice(law, content);
+  add_rehearsals(law, content);
+  add_path_warnings(content);
+  make_output_folder(output);
   if (input.finished_runs)
     content.dem = adopt(input.finished_runs->dataset, input.finished_runs->folder, make_subfolder(output, "dem"));
-  if (input.initial != Initial::measured) add_free_curves(law, content);
-  if (content.dem) add_compared_curves(law, input, content);
-  add_advice(law, content);
-  content.bands = decides ? "none: the law decides the strain" : available_bands(input.law);
   content.provenance = Json(provenance(execution));
   predict::write_prediction(output, content);
   log_warnings(input.law, content, execution.watch);
+  require_a_curve(content);
   return content;
 }
 

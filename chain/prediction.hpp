@@ -55,7 +55,9 @@ FinishedRuns read_runs_of(const Path& path, const std::filesystem::path& folder)
 
 /// Curves of each rung, comparisons, the rung that the path needs. Writes the folder `output`: prediction.json, a CSV for
 /// each curve, with runs dem/ and comparison.json. Throws InvalidInput before anything is written for a path, a rung or a
-/// start that the law cannot serve; NotConverged; Interrupted, after which finished runs are found again.
+/// start that the law cannot serve. A curve on which the law does not converge is left out and told in `failures` and as a
+/// warning; NotConverged where that leaves none (new runs and prediction.json stay). Interrupted, after which finished runs
+/// are found again. No empty folder stays behind.
 predict::PredictionFolder predict_path(const PredictionInput& input, const std::filesystem::path& output,
                                        const Execution& execution);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "fit/data/data_set.hpp"
 #include "fit/data/outliers.hpp"
@@ -17,6 +18,8 @@
 
 namespace grainlaw::fit {
 namespace {
+
+constexpr double kLeastParticles = 4000;  // of a packing, below which its size is seen in the parameters
 
 /// Laws of Eq. (20) of which not one shear test says anything.
 std::vector<std::string> unseen_laws(const std::vector<ShearFit>& shear) {
@@ -64,8 +67,11 @@ StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibra
   return memory_stage(trajectories, options);
 }
 
-ValidRange range_of(const std::vector<Trajectory>& trajectories) {
-  ValidRange range{1, 0, 0, 0};
+ValidRange range_of(const std::vector<Trajectory>& trajectories, const DataSet& data) {
+  ValidRange range{1, 0, 0, 0, 0};
+  for (const TestRecord* test : data.all_used()) {
+    for (const Observation& row : test->rows) range.shear_path_max = std::max(range.shear_path_max, row.shear_path);
+  }
   for (const Trajectory& t : trajectories) {
     if (t.rows.empty()) continue;
     const double e = t.rows.back().e;
@@ -77,7 +83,37 @@ ValidRange range_of(const std::vector<Trajectory>& trajectories) {
   return range;
 }
 
+/// The law's errors by the prior, and what is to be said of them.
+void moderate_errors(const CalibrationOptions& options, Calibration& calibration) {
+  CalibratedLaw& law = calibration.law;
+  const PackingCount& size = calibration.size;
+  if (options.prior) {
+    const Moderation& done = calibration.moderation = moderate(*options.prior, size, law);
+    if (done.parameters == 0 && done.ratio > 0)
+      calibration.warnings.push_back(
+          fmt::format("the prior of the errors is not used: our variances are {:.2g} times what it expects, where "
+                      "{:.2g} could be chance; errors are those of {} packings alone",
+                      done.ratio, done.ratio > 1 ? done.largest_ratio : 1 / done.largest_ratio, size.packings));
+  }
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    if (says_nothing(law, i)) law.estimates[i].note = fmt::format("not determined by {} packings", size.packings);
+  }
+  if (size.spheres < kLeastParticles * static_cast<double>(size.packings))
+    calibration.warnings.push_back(fmt::format(
+        "packings of {:.0f} spheres: what a size below {:.0f} biases is in no interval (jamming "
+        "densities first: docs/theory/fit.md, Moderated variances)",
+        size.spheres / size.packings, kLeastParticles));
+}
+
 }  // namespace
+
+PackingCount size_of(const std::vector<TestRecord>& tests) {
+  std::map<std::uint64_t, double> spheres;
+  for (const TestRecord& test : tests) spheres[test.packing.seed] = static_cast<double>(test.packing.particles);
+  PackingCount size{static_cast<int>(spheres.size()), 0};
+  for (const auto& [seed, count] : spheres) size.spheres += count;
+  return size;
+}
 
 Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOptions& options,
                       const RunControl& control) {
@@ -98,8 +134,10 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   run(lode_stage(sheared.others, options), calibration, options, control);
   run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
   calibration.law.covariance = calibration.errors.covariance();
+  calibration.size = size_of(tests);
+  moderate_errors(options, calibration);
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
-  calibration.law.range = range_of(trajectories);
+  calibration.law.range = range_of(trajectories, data);
   calibration.law.converged = all_converged(calibration);
   return calibration;
 }

@@ -37,7 +37,12 @@ struct Calibration {
   std::vector<std::string> unused_tests;  ///< calibration tests that no stage reads, e.g. ISO loading
   std::vector<std::string> warnings;      ///< about the data, e.g. rows that stand out (outliers.hpp)
   std::vector<LeftOut> left_out;          ///< one per packing, when asked for (leave_one_out.hpp)
+  PackingCount size;                      ///< of the tests
+  Moderation moderation;                  ///< what a prior made of the law's errors; those of the stages are without
 };
+
+/// Packings (seeds) of the tests and their spheres.
+PackingCount size_of(const std::vector<TestRecord>& tests);
 
 /// Throws InvalidInput naming test, row and column when a validation test, a test without rows, a non-finite or
 /// inconsistent value is given, or when the ISO unloading branch or all shear tests are missing (with the remedy).

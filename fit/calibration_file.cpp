@@ -148,6 +148,11 @@ void write_calibration(const std::filesystem::path& file, const Calibration& cal
   document["coupling"] = to_string(calibration.law.coupling);
   document["converged"] = calibration.law.converged;
   document["options"] = fields_to_json(options);
+  const Moderation& moderation = calibration.moderation;
+  document["moderation"] = {{"parameters", moderation.parameters},
+                            {"ratio", options.prior ? number_or_null(moderation.ratio) : OrderedJson()},
+                            {"packings", calibration.size.packings},
+                            {"spheres", calibration.size.spheres}};
   document["dataset_digest"] = calibration.law.dataset_digest;
   document["stages"] = stages_to_json(calibration);
   document["shear"] = shears_to_json(calibration);

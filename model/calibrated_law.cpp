@@ -37,11 +37,28 @@ bool without_exponential(const CalibratedLaw& law, std::size_t i) {
   return has_value(law, Q_c) && *fields(law.parameters)[Q_c] == 0;
 }
 
+constexpr double kPlausibleJamming = 0.02;  // random packings of spheres jam within .64 ... .68
+
+/// How large a parameter is when nothing is known of it.
+double plausible_size(std::size_t i) {
+  const ParameterInfo& info = parameter_table()[i];
+  const std::string name = info.name;
+  if (name.ends_with(".nu_c")) return kPlausibleJamming;
+  if (name.ends_with(".Q_limit")) return parameter_table()[i + 1].start;
+  return info.start != 0 ? std::abs(info.start) : std::min(1.0, info.upper);
+}
+
 }  // namespace
 
 double Estimate::half_width() const {
   if (!std::isfinite(standard_error) || std::isnan(degrees_of_freedom)) return std::nan("");
   return student_95(degrees_of_freedom) * standard_error;
+}
+
+bool says_nothing(const CalibratedLaw& law, std::size_t parameter) {
+  const Estimate& e = law.estimates[parameter];
+  const bool of_jamming = std::string_view(parameter_table()[parameter].name).ends_with(".nu_c");
+  return e.half_width() > std::max(of_jamming ? 0 : std::abs(e.value), plausible_size(parameter));
 }
 
 bool has_values(const CalibratedLaw& law, std::string_view group) {
@@ -88,11 +105,15 @@ std::vector<std::size_t> uncertain_parameters(const CalibratedLaw& law) {
 }
 
 std::string available_bands(const CalibratedLaw& law) {
+  const std::string of_law = law.rehearsals.empty()
+                                 ? "; the law's own error is not in them: no other path was rehearsed"
+                                 : "; with the law's own error";
   if (uncertain_parameters(law).empty()) return "none: the parameters have no covariance; calibrate again";
   if (!std::isfinite(law.scatter.compression))
     return "95 %, of the mean curve only: the parameters have no scatter between packings; calibrate again, with two "
-           "seeds or more";
-  return "95 %, of the mean curve and of a single run";
+           "seeds or more" +
+           of_law;
+  return "95 %, of the mean curve and of a single run" + of_law;
 }
 
 }  // namespace grainlaw

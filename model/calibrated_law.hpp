@@ -12,6 +12,7 @@
 
 #include "model/law.hpp"
 #include "model/parameters.hpp"
+#include "model/rehearsals.hpp"
 
 namespace grainlaw {
 
@@ -50,6 +51,7 @@ struct PackingScatter {
 struct ValidRange {
   double nu_min = 0, nu_max = 1;                    ///< volume fraction of the rows that entered [-]
   double eps_dev_max = 1e300, eps_vol_max = 1e300;  ///< largest |strain| from the start of a test [-]
+  double shear_path_max = 1e300;                    ///< longest shear path of a test [-]
 };
 
 struct CalibratedLaw {
@@ -59,10 +61,15 @@ struct CalibratedLaw {
   Eigen::MatrixXd covariance;  ///< kParameterCount square, zero where there is no error; its degrees of freedom are the
                                ///< estimates'
   PackingScatter scatter;      ///< between runs of one path on different packings
-  ValidRange range{0, 0, 0, 0};  ///< of the rows that entered
-  bool converged = false;        ///< all stages of the fit
-  std::string dataset_digest;    ///< of the data set that was fitted; may be empty
+  ValidRange range{0, 0, 0, 0, 0};    ///< of the rows that entered
+  bool converged = false;             ///< all stages of the fit
+  std::string dataset_digest;         ///< of the data set that was fitted; may be empty
+  std::vector<Rehearsal> rehearsals;  ///< paths that no fit saw, each with how far the law is off; may be none
 };
+
+/// Whether the 95 % interval of the parameter says nothing: its half width is more than the parameter's own value and more
+/// than its plausible size (where a fit would start; of Q_limit that of its Q_c; of a jamming density .02).
+bool says_nothing(const CalibratedLaw& law, std::size_t parameter);
 
 /// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
 bool has_values(const CalibratedLaw& law, std::string_view group);
@@ -81,7 +88,8 @@ std::optional<Rung> richest_rung(const CalibratedLaw& law);
 /// Indices in parameter_table() of the parameters that have an error: those that bands are made of.
 std::vector<std::size_t> uncertain_parameters(const CalibratedLaw& law);
 
-/// One line: which bands about a predicted curve the law's errors allow, or why there are none.
+/// One line: which bands about a predicted curve the law's errors allow, or why there are none, and whether the law's own
+/// error is in them.
 std::string available_bands(const CalibratedLaw& law);
 
 }  // namespace grainlaw

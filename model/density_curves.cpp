@@ -15,6 +15,28 @@ bool reads(const DensityCurve& curve, std::string_view parameter) {
   return std::any_of(curve.groups.begin(), curve.groups.end(), [&](const char* name) { return group == name; });
 }
 
+/// To all parameters; NaN where one that the curve reads has no error.
+Eigen::VectorXd gradient_of(const CalibratedLaw& law, const DensityCurve& curve, double nu) {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(kParameterCount);
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    if (!reads(curve, parameter_table()[i].name)) continue;
+    const Estimate& estimate = law.estimates[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    const double error = std::sqrt(law.covariance(k, k));
+    if (estimate.status == Status::fixed || estimate.status == Status::at_bound) continue;
+    if (!(error > 0)) return Eigen::VectorXd::Constant(kParameterCount, std::numeric_limits<double>::quiet_NaN());
+    const double step = kStepInErrors * error;
+    LawParameters<double> p = law.parameters;
+    double& x = *fields(p)[i];
+    const double x_0 = x;
+    x = x_0 + step;
+    const double above = curve.of(p, nu);
+    x = x_0 - step;
+    gradient(k) = (above - curve.of(p, nu)) / (2 * step);
+  }
+  return gradient;
+}
+
 }  // namespace
 
 const std::vector<DensityCurve>& density_curves() {
@@ -59,24 +81,19 @@ bool has_values(const CalibratedLaw& law, const DensityCurve& curve) {
 }
 
 double standard_error(const CalibratedLaw& law, const DensityCurve& curve, double nu) {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(kParameterCount);
-  for (std::size_t i = 0; i < kParameterCount; ++i) {
-    if (!reads(curve, parameter_table()[i].name)) continue;
-    const Estimate& estimate = law.estimates[i];
-    const auto k = static_cast<Eigen::Index>(i);
-    const double error = std::sqrt(law.covariance(k, k));
-    if (estimate.status == Status::fixed || estimate.status == Status::at_bound) continue;
-    if (!(error > 0)) return std::numeric_limits<double>::quiet_NaN();
-    const double step = kStepInErrors * error;
-    LawParameters<double> p = law.parameters;
-    double& x = *fields(p)[i];
-    const double x_0 = x;
-    x = x_0 + step;
-    const double above = curve.of(p, nu);
-    x = x_0 - step;
-    gradient(k) = (above - curve.of(p, nu)) / (2 * step);
-  }
+  const Eigen::VectorXd gradient = gradient_of(law, curve, nu);
   return std::sqrt(gradient.dot(law.covariance * gradient));
+}
+
+double degrees_of_freedom(const CalibratedLaw& law, const DensityCurve& curve, double nu) {
+  const Eigen::VectorXd gradient = gradient_of(law, curve, nu);
+  const Eigen::VectorXd shares = gradient.cwiseProduct(law.covariance * gradient).cwiseAbs();
+  double inverse = 0;
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const double share = shares(static_cast<Eigen::Index>(i));
+    if (share != 0) inverse += share / law.estimates[i].degrees_of_freedom;
+  }
+  return shares.sum() / inverse;
 }
 
 std::vector<CurvePoint> curve_points(const LawParameters<double>& ours, const LawParameters<double>& published,

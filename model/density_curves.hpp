@@ -28,6 +28,10 @@ bool has_values(const CalibratedLaw& law, const DensityCurve& curve);
 /// parameter that the curve reads has no error.
 double standard_error(const CalibratedLaw& law, const DensityCurve& curve, double nu);
 
+/// Its degrees of freedom: those of the parameters, weighted by their shares in the variance (docs/theory/bands.md, Weighted
+/// degrees of freedom). NaN where there is no error.
+double degrees_of_freedom(const CalibratedLaw& law, const DensityCurve& curve, double nu);
+
 struct CurvePoint {
   const DensityCurve* curve = nullptr;
   double nu = 0;         ///< volume fraction [-]

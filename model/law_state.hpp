@@ -27,7 +27,7 @@ struct LawState {
 /// What there is to say of a part.
 struct StatePart {
   const char* name;  ///< for messages
-  bool has_rate;     ///< false: only reversals and spin change it
+  bool has_rate;     ///< false: only turns of the shear and spin change it
   double typical;    ///< magnitude in steady shear [-]
   bool of_P;         ///< `typical` is in units of P
 };

@@ -17,8 +17,11 @@
 // P relaxes to its sheared level at constant volume: nu_J = nu_c nu/nu_P is the evolving jamming density, with nu_P the
 // density at which the reference, ISO unloading, carries P. To first order, nu_P = nu exp((P - P_iso)/B_iso); below nu_c
 // the reference goes on along its tangent. B and DG are those at nu_P.
-// A reversal is a jump, s_r := s, where <s - s_r, N> < 0. The rate of a state that should have turned is that of the
-// turned one: trial steps of a solver are harmless.
+// Shear has turned where <s - s_r, N> < 0, and takes with it what lies along N alone: s_r += <s - s_r, N> N. At a corner
+// that is a jump, which vanishes where the turn just begins to be one, so that the response is a continuous function of the
+// direction of shear. Within a segment (compression takes s down faster than shear brings it up, or spin) it is a stretch on
+// which s_r follows s along N, until loading goes on: d<s - s_r, N> = 0. The rate of a state that should have turned is that of
+// the turned one: trial steps of a solver are harmless.
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +31,13 @@
 
 namespace grainlaw {
 
-/// Delta, in s_max, below which the stress goes to its limit no faster: no small cycle near the limit is stiff.
+/// Delta, in s_lim, below which the stress goes to its limit no faster: no small cycle near the limit is stiff. There
+/// flow = (Delta N - xi^j (s - s_r))/D, D this distance, xi = (|s - s_r| + D - Delta)/D and j = (n - 1) Delta/D: as elsewhere
+/// at Delta = D, linear at Delta = 0.
 inline constexpr double kLeastDistance = 0.1;
+
+/// xi from which on the way back to the limit gets no steeper, where the stress ratio lies beyond it [-].
+inline constexpr double kMostBeyond = 2;
 
 /// eps_E, the shear strain over which the direction of shear is remembered [-].
 inline constexpr double kStrainMemory = 0.3;
@@ -37,16 +45,23 @@ inline constexpr double kStrainMemory = 0.3;
 /// h: the part of the relaxation of P that waits for plastic shear [-].
 inline constexpr double kPlasticRelaxation = 0.5;
 
-/// <s - s_r, N>: a reversal is where it is, or falls, below zero. Zero without shear.
+/// <s - s_r, N>: shear has turned where it is below zero. Zero without shear.
 template <class T>
 T reversal_value(const LawState<T>& y, const LawDirection& direction) {
   return (y.sigma / y.P - y.s_r).dot(direction.N.template cast<T>());
 }
 
-/// The jump at a reversal.
+/// Makes it zero: the jump where shear has turned.
 template <class T>
-void reverse(LawState<T>& y) {
-  y.s_r = y.sigma / y.P;
+void reverse(LawState<T>& y, const LawDirection& direction) {
+  y.s_r += direction.N.template cast<T>() * reversal_value(y, direction);
+}
+
+/// Rate of <s - s_r, N> at `y` with d(state)/de = `rate`.
+template <class T>
+T reversal_rate(const LawState<T>& y, const LawState<T>& rate, const LawDirection& direction) {
+  const Deviator<T> s = (rate.sigma - y.sigma * (rate.P / y.P)) / y.P;
+  return (s - rate.s_r).dot(direction.N.template cast<T>());
 }
 
 /// E after shear along a straight segment from e = 0 to `e`.
@@ -98,7 +113,8 @@ template <class T>
 Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_lim, const T& n) {
   using std::pow;
   using std::sqrt;
-  if ((s - s_r).dot(N) < 0.0) s_r = s;
+  const T turned = (s - s_r).dot(N);
+  if (turned < 0.0) s_r += turned * N;
   const T along = s_r.dot(N);
   const Deviator<T> across = s_r - along * N;
   T across2 = across.squaredNorm();
@@ -109,10 +125,11 @@ Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>
   const T square = s_lim * s_lim - across2, least = kLeastDistance * s_lim;
   const T Delta = square > 0.0 ? T(sqrt(square) - along) : T(-along);
   const Deviator<T> gone = s - s_r;
-  if (Delta < least) return (N * Delta - gone) / least;
-  const T gone2 = gone.squaredNorm();
-  if (!(gone2 > 0.0)) return N;  // where the slopes of sqrt and pow are infinite
-  return N - gone * (pow(T(sqrt(gone2) / Delta), n - 1.0) / Delta);
+  const T gone2 = gone.squaredNorm(), D = Delta < least ? least : Delta;
+  const Deviator<T> elastic = N * T(Delta / D);
+  if (!(gone2 > 0.0)) return elastic;  // where the slopes of sqrt and pow are infinite
+  const T xi = (sqrt(gone2) + (D - Delta)) / D, near = Delta > 0.0 ? T(Delta / D) : T(0.0);
+  return elastic - gone * (pow(xi < kMostBeyond ? xi : T(kMostBeyond), (n - 1.0) * near) / D);
 }
 
 /// s_lim at dilatancy chi k (P_t - P)/B [-].

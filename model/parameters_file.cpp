@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
+#include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
+#include "model/files/path_json.hpp"
 #include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -37,6 +39,27 @@ OrderedJson scatter_to_json(const PackingScatter& scatter) {
 PackingScatter scatter_from_json(const Json& object) {
   return {object["packings"], object["degrees_of_freedom"], number_or_nan(object["compression"]),
           number_or_nan(object["s_par"]), number_or_nan(object["F_par"])};
+}
+
+OrderedJson rehearsals_to_json(const std::vector<Rehearsal>& rehearsals) {
+  OrderedJson list = OrderedJson::array();
+  for (const Rehearsal& rehearsal : rehearsals) {
+    OrderedJson object = fields_to_json(rehearsal);
+    object["path"] = path_to_json(rehearsal.path);
+    list.push_back(object);
+  }
+  return list;
+}
+
+std::vector<Rehearsal> rehearsals_from_json(const Json& list, const std::string& name) {
+  std::vector<Rehearsal> rehearsals;
+  for (const Json& object : list) {
+    Rehearsal& rehearsal = rehearsals.emplace_back();
+    read_fields(object, rehearsal);
+    rehearsal.path =
+        path_from_json(object["path"], name, fmt::format("rehearsals[{}].path.", rehearsals.size() - 1), true);
+  }
+  return rehearsals;
 }
 
 constexpr int kVersion = 4;
@@ -117,7 +140,9 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
   document["scatter"] = scatter_to_json(law.scatter);
   document["ranges"] = {{"nu", {law.range.nu_min, law.range.nu_max}},
                         {"eps_dev", {0.0, law.range.eps_dev_max}},
-                        {"eps_vol", {0.0, law.range.eps_vol_max}}};
+                        {"eps_vol", {0.0, law.range.eps_vol_max}},
+                        {"shear_path", {0.0, law.range.shear_path_max}}};
+  if (!law.rehearsals.empty()) document["rehearsals"] = rehearsals_to_json(law.rehearsals);
   if (!law.dataset_digest.empty()) document["dataset_digest"] = law.dataset_digest;
   if (!parameters.provenance.is_null()) document["provenance"] = OrderedJson(parameters.provenance);
   write_json(file, document);
@@ -168,6 +193,10 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   law.range.nu_max = ranges["nu"][1];
   law.range.eps_dev_max = ranges["eps_dev"][1];
   law.range.eps_vol_max = ranges["eps_vol"][1];
+  // older files do not say it: their tests sheared one way
+  law.range.shear_path_max =
+      ranges.contains("shear_path") ? ranges["shear_path"][1].get<double>() : law.range.eps_dev_max;
+  if (document.contains("rehearsals")) law.rehearsals = rehearsals_from_json(document["rehearsals"], name);
   law.dataset_digest = document.value("dataset_digest", "");
   result.provenance = document.value("provenance", Json());
   return result;

@@ -1,5 +1,7 @@
 #include "predict/bands.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "model/student.hpp"
@@ -7,57 +9,85 @@
 namespace grainlaw::predict {
 namespace {
 
-/// What the law knows of its errors: those of the uncertain parameters alone.
-struct Errors {
-  Eigen::MatrixXd covariance;          ///< square
-  Eigen::VectorXd degrees_of_freedom;  ///< positive, may be infinite
+struct Banded {
+  Rehearsed error;  ///< whose unit and scatter it has
+  double RowBand::*band;
+  double (*slope)(const RowSlope&);
 };
+constexpr std::array<Banded, 5> kBanded{
+    {{Rehearsed::P_star, &RowBand::P, [](const RowSlope& s) { return s.state.P; }},
+     {Rehearsed::s_par, &RowBand::s_dev, [](const RowSlope& s) { return s.s_dev; }},
+     {Rehearsed::s_par, &RowBand::s_par, [](const RowSlope& s) { return s.s_par; }},
+     {Rehearsed::F_par, &RowBand::F_dev, [](const RowSlope& s) { return s.F_dev; }},
+     {Rehearsed::F_par, &RowBand::F_par, [](const RowSlope& s) { return s.F_par; }}}};
 
-Errors errors_of(const CalibratedLaw& law) {
-  const std::vector<std::size_t> parameters = uncertain_parameters(law);
-  Errors errors{law.covariance(parameters, parameters), Eigen::VectorXd(static_cast<Eigen::Index>(parameters.size()))};
-  for (std::size_t k = 0; k < parameters.size(); ++k)
-    errors.degrees_of_freedom(static_cast<Eigen::Index>(k)) = law.estimates[parameters[k]].degrees_of_freedom;
-  return errors;
-}
-
-/// Of the mean of a quantity with slopes `g`.
-double half_width(const Errors& errors, const Eigen::VectorXd& g) {
-  const Eigen::VectorXd shares = g.cwiseProduct(errors.covariance * g), weights = shares.cwiseAbs();
-  const double variance = shares.sum();
-  if (!std::isfinite(variance)) return variance;
-  if (!(variance > 0)) return 0;
-  return student_95(weights.sum() / weights.dot(errors.degrees_of_freedom.cwiseInverse())) * std::sqrt(variance);
+double half_width(const Variance& variance) {
+  if (!std::isfinite(variance.value)) return variance.value;
+  return variance.value > 0 ? student_95(variance.degrees_of_freedom) * std::sqrt(variance.value) : 0;
 }
 
 }  // namespace
 
-void add_bands(const CalibratedLaw& law, Prediction& prediction) {
+Variance sum_of(const Variance& a, const Variance& b) {
+  if (!(b.value > 0)) return a;
+  if (!(a.value > 0)) return {a.value + b.value, b.degrees_of_freedom};  // NaN stays NaN
+  return {a.value + b.value, (a.value + b.value) / (a.value / a.degrees_of_freedom + b.value / b.degrees_of_freedom)};
+}
+
+Variance widened(const Variance& law, double own, double m) {
+  if (!(own > 0)) return law;
+  const Variance sum = sum_of(law, {own, m});
+  return {sum.value, std::min(m, sum.degrees_of_freedom)};
+}
+
+BandMaker::BandMaker(const CalibratedLaw& law) : law_(law) {
+  const std::vector<std::size_t> parameters = uncertain_parameters(law);
+  covariance_ = law.covariance(parameters, parameters);
+  degrees_of_freedom_.resize(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    degrees_of_freedom_(static_cast<Eigen::Index>(k)) = law.estimates[parameters[k]].degrees_of_freedom;
+}
+
+Variance BandMaker::of_law(const std::vector<RowSlope>& slopes, double (*slope)(const RowSlope&)) const {
+  Eigen::VectorXd g(static_cast<Eigen::Index>(slopes.size()));
+  for (std::size_t k = 0; k < slopes.size(); ++k) g(static_cast<Eigen::Index>(k)) = slope(slopes[k]);
+  const Eigen::VectorXd shares = g.cwiseProduct(covariance_ * g), weights = shares.cwiseAbs();
+  Variance variance{shares.sum()};
+  if (variance.value > 0) variance.degrees_of_freedom = weights.sum() / weights.dot(degrees_of_freedom_.cwiseInverse());
+  return variance;
+}
+
+Variance BandMaker::of_law(const std::vector<RowSlope>& slopes, Rehearsed quantity) const {
+  return of_law(slopes, std::ranges::find_if(kBanded, [&](const Banded& b) {
+                          return b.error == quantity && b.band != &RowBand::s_dev && b.band != &RowBand::F_dev;
+                        })->slope);
+}
+
+double BandMaker::scatter(double nu, Rehearsed quantity) const {
+  const PackingScatter& scatter = law_.scatter;
+  return quantity == Rehearsed::P_star  ? scatter.compression * error_units(law_.parameters, nu).B
+         : quantity == Rehearsed::s_par ? scatter.s_par
+                                        : scatter.F_par;
+}
+
+void add_bands(const CalibratedLaw& law, const std::vector<StraightSegment>& path, Prediction& prediction) {
   if (prediction.slopes.empty()) return;
-  struct Quantity {
-    double RowBand::*band;
-    double (*slope)(const RowSlope&);
-    double scatter;
-  };
-  const Errors errors = errors_of(law);
-  const PackingScatter& scatter = law.scatter;
-  const double of_scatter = scatter.degrees_of_freedom > 0 ? student_95(scatter.degrees_of_freedom)
-                                                           : std::numeric_limits<double>::quiet_NaN();
+  const BandMaker bands(law);
+  const Spokesmen spokesmen = spokesmen_for(path, law.rehearsals);
+  std::array<LawError, 3> errors;
+  for (const Rehearsed quantity : kValues<Rehearsed>)
+    errors[static_cast<std::size_t>(quantity)] = law_error(spokesmen, prediction.model, quantity);
+  const double of_scatter = law.scatter.degrees_of_freedom > 0 ? student_95(law.scatter.degrees_of_freedom)
+                                                               : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t i = 0; i < prediction.slopes.size(); ++i) {
     PredictedRow& row = prediction.rows[i];
-    const std::vector<RowSlope>& slopes = prediction.slopes[i];
-    const double B = law.parameters.isotropic.B_star(reference_density(law.parameters, row.nu));
-    for (const Quantity& quantity :
-         {Quantity{&RowBand::P, [](const RowSlope& s) { return s.state.P; }, scatter.compression * B},
-          Quantity{&RowBand::s_dev, [](const RowSlope& s) { return s.s_dev; }, scatter.s_par},
-          Quantity{&RowBand::s_par, [](const RowSlope& s) { return s.s_par; }, scatter.s_par},
-          Quantity{&RowBand::F_dev, [](const RowSlope& s) { return s.F_dev; }, scatter.F_par},
-          Quantity{&RowBand::F_par, [](const RowSlope& s) { return s.F_par; }, scatter.F_par}}) {
-      Eigen::VectorXd g(static_cast<Eigen::Index>(slopes.size()));
-      for (std::size_t k = 0; k < slopes.size(); ++k) g(static_cast<Eigen::Index>(k)) = quantity.slope(slopes[k]);
-      const double mean = half_width(errors, g);
-      row.mean.*quantity.band = mean;
-      row.single.*quantity.band = std::hypot(mean, of_scatter * quantity.scatter);
+    const ErrorUnits units = error_units(law.parameters, row.nu);
+    for (const Banded& banded : kBanded) {
+      const LawError& error = errors[static_cast<std::size_t>(banded.error)];
+      Variance variance = bands.of_law(prediction.slopes[i], banded.slope);
+      variance = widened(variance, std::pow(units.of(banded.error) * error.tau, 2), error.degrees_of_freedom);
+      row.mean.*banded.band = half_width(variance);
+      row.single.*banded.band = std::hypot(row.mean.*banded.band, of_scatter * bands.scatter(row.nu, banded.error));
     }
   }
 }
@@ -67,7 +97,7 @@ Prediction predict_with_bands(Rung rung, const CalibratedLaw& law, const std::ve
                               const std::vector<OutputPoint>& points, const RunControl& control) {
   Prediction prediction = predict(rung, law.parameters, law.coupling, segments, start, points, {}, law.range, control,
                                   {uncertain_parameters(law), start_from_law});
-  add_bands(law, prediction);
+  add_bands(law, segments, prediction);
   return prediction;
 }
 

@@ -7,9 +7,43 @@
 
 namespace grainlaw::predict {
 
-/// Sets the bands of all rows whose slopes are known, by the errors of `law`. `prediction` was made by this law and with
-/// Sensitivity::parameters its uncertain_parameters(). Without scatter between packings there are no bands of a single run.
-void add_bands(const CalibratedLaw& law, Prediction& prediction);
+/// A variance and how well it is known.
+struct Variance {
+  double value = 0;
+  double degrees_of_freedom = std::numeric_limits<double>::infinity();
+};
+
+/// The sum, by weighted degrees of freedom: 1/n = sum_k w_k/n_k / sum_k w_k, w_k the values.
+Variance sum_of(const Variance& a, const Variance& b);
+
+/// `law`, the variance that parameters make, with `own`, that of the law's own error from m rehearsals, where that is
+/// positive. The sum then has m degrees of freedom at most, however well `law` is known: it is what was measured on m paths,
+/// and `own` the part of it that is left.
+Variance widened(const Variance& law, double own, double m);
+
+/// What the law knows of its errors, as variances of a row.
+class BandMaker {
+ public:
+  /// `law` must outlive the object.
+  explicit BandMaker(const CalibratedLaw& law);
+
+  /// g.V g of a quantity; NaN where slopes end.
+  Variance of_law(const std::vector<RowSlope>& slopes, double (*slope)(const RowSlope&)) const;
+  Variance of_law(const std::vector<RowSlope>& slopes, Rehearsed quantity) const;
+
+  /// Standard deviation between runs; NaN where none is known.
+  double scatter(double nu, Rehearsed quantity) const;
+
+ private:
+  const CalibratedLaw& law_;
+  Eigen::MatrixXd covariance_;          // of the uncertain parameters, square
+  Eigen::VectorXd degrees_of_freedom_;  // positive, may be infinite
+};
+
+/// Sets the bands of all rows whose slopes are known, by the errors of `law` and its own error from the rehearsals that speak
+/// for `path`, where there are any. `prediction` was made along it by this law and with Sensitivity::parameters its
+/// uncertain_parameters(). Without scatter between packings there are no bands of a single run.
+void add_bands(const CalibratedLaw& law, const std::vector<StraightSegment>& path, Prediction& prediction);
 
 /// predict() by `law` and within its range, with bands. `start_from_law`: as in Sensitivity.
 Prediction predict_with_bands(Rung rung, const CalibratedLaw& law, const std::vector<StraightSegment>& segments,

@@ -10,7 +10,7 @@
 namespace grainlaw::predict {
 namespace {
 
-constexpr double kFirstStrain = 0.01;  // before it the start, not the law, is compared
+constexpr double kFirstStrain = 0.01;
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStrainMismatch = 1e-8;  // what points_of() accepts, and some
 
@@ -81,11 +81,14 @@ QuantityComparison compare_quantity(const std::string& name, const Prediction& p
 
 }  // namespace
 
+double counts_from(const std::vector<StraightSegment>& path) {
+  // decided by the path, not by the rows reached: one of isotropic segments only has no shear to wait for
+  return shear_direction(path).isZero() ? 0 : kFirstStrain;
+}
+
 Comparison compare(const Prediction& prediction, const TestRecord& test) {
   check_pairs(prediction, test);
-  // Decided by the path, not by the rows reached: a path of isotropic segments only has no shear to wait for.
-  const bool sheared = !shear_direction(resolve(test.path)).isZero();
-  const double from = sheared ? kFirstStrain : 0;
+  const double from = counts_from(resolve(test.path));
   Comparison comparison;
   comparison.test = test.name;
   comparison.quantities = {compare_quantity(

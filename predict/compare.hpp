@@ -43,6 +43,9 @@ constexpr auto fields_of(std::type_identity<Comparison>) {
 }
 static_assert(tells_every_member<Comparison>());
 
+/// Shear path from which on rows count: before it the start, not the law, is compared. Zero on a path without shear.
+double counts_from(const std::vector<StraightSegment>& path);
+
 /// `prediction` was made at points_of(test); rows are paired in order, the prediction may end early. Throws InvalidInput
 /// when a pair lies at different strains.
 Comparison compare(const Prediction& prediction, const TestRecord& test);

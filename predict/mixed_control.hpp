@@ -5,6 +5,7 @@
 //   d c_k(state; D + sum a M)/de = r_k - kappa (c_k - c_k(0) - r_k e)        c_k: stress, P or |sigma'|/P, r_k its rate
 // by Newton's method from the tangent of the right-hand side (the rate is homogeneous in the strain rate, not linear: it
 // holds its norm). The last term takes back what drifts. Unknowns: state, strain, shear path, by CVODE.
+// s_r (model/memory.hpp) turns at the corners of the path alone: on a segment it rests.
 
 #include "predict/predict.hpp"
 

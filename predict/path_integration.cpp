@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "model/vocabulary/error.hpp"
 
@@ -25,7 +26,7 @@ constexpr double kHeldPressure = 1e-6;
 // |sigma'|/P up to which no principal stress can be tensile: the least eigenvalue is at least -(2/3)|sigma'|.
 constexpr double kSafeRatio = 1.2;
 
-constexpr double kRounding = 1e-9;  // of a least principal stress that vanishes, over P
+constexpr double kRounding = 1e-9;  // of a least principal stress that vanishes, over P; of <s - s_r, N> that does
 
 constexpr int kMostEventsInPlace = 20;
 
@@ -96,14 +97,12 @@ std::vector<LawState<double>> PathIntegration::slopes() const {
   return slopes;
 }
 
-/// Falls through zero where the state unjams or, under spin, reverses.
+/// Falls through zero where the state unjams, or s_r begins or ends to follow s.
 double PathIntegration::event(double e, const double* y) const {
   const LawState<double> state = law_->state_of(e, y);
   double least = std::min(state.P - P_floor_, least_principal_stress(state.P, state.sigma));
-  const bool may_reverse =
-      rung_ == Rung::memory && law_->direction().de > 0 && !law_->direction().spin.isZero(0) && state.P > P_floor_;
-  if (may_reverse) least = std::min(least, reversal_value(state, law_->direction()));
-  return least;
+  if (rung_ != Rung::memory || law_->direction().de == 0 || !(state.P > P_floor_)) return least;
+  return std::min(least, follows_ ? -law_->reversal_rate(e, state) : reversal_value(state, law_->direction()));
 }
 
 void PathIntegration::note(EventKind kind) { events_.push_back({kind, {index_, e_}, law_->segment().nu(e_)}); }
@@ -126,17 +125,21 @@ void PathIntegration::enter(const StraightSegment& segment, int index) {
   e_ = 0;
   events_in_place_ = 0;
   jammed_until_ = rung_ == Rung::memory ? kInfinity : jamming_point(segment, parameters_.isotropic.pressure.nu_c);
-  if (jammed_) turn(false);
+  follows_ = false;
+  if (jammed_) turn();
 }
 
-/// Turns the state, and its slopes, where the path does at a corner; where spin does `on_the_way` the slopes end.
-void PathIntegration::turn(bool on_the_way) {
-  const LawState<double> before = state_;
-  turn_corner(rung_, state_, law_->direction());
-  if (state_.s_r != before.s_r) {
-    if (on_the_way) slopes_.clear();
-    for (Slope& slope : slopes_) slope = turned_slope(before, slope);
+/// At a corner, or where s_r begins or ends to follow s: from there on as the state asks for.
+void PathIntegration::turn() {
+  const LawDirection& direction = law_->direction();
+  const bool turned = rung_ == Rung::memory && direction.de > 0 && reversal_value(state_, direction) <= kRounding;
+  const bool followed = std::exchange(follows_, turned && !follows_ && law_->reversal_rate(e_, state_) < 0);
+  if (turned && (follows_ || followed || reversal_value(state_, direction) < 0)) {
+    for (Slope& slope : slopes_) slope = turned_slope(state_, slope, direction);
+    reverse(state_, direction);
   }
+  law_->set(follows_ ? Turning::follows : Turning::rests);
+  sensitivity_->set(follows_ ? Turning::follows : Turning::rests);
   start_from(state_);
 }
 
@@ -161,7 +164,8 @@ void PathIntegration::move_unjammed(double e) {
   e_ = e_J;
   jammed_ = true;
   note(EventKind::jammed);
-  start_from({.P = 2 * P_floor_});
+  state_ = {.P = 2 * P_floor_};
+  turn();
 }
 
 void PathIntegration::move_jammed(double e) {
@@ -221,7 +225,7 @@ void PathIntegration::take_event() {
     state_ = {};
     return;
   }
-  turn(true);
+  turn();
 }
 
 PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,

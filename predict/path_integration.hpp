@@ -5,7 +5,7 @@
 //   tension   the least principal stress falls to zero before: without cohesion and friction nothing holds the spheres
 //             together across that axis any more, and the packing comes apart as if P had vanished
 //   jammed    nu rises above nu_J, the density at which the state unjammed: from P = tau = F' = 0
-// and, under spin, the reversals of Rung::memory. With the slopes of the state to parameters up to the first event
+// and, of Rung::memory, the beginning and the end of a stretch where s_r follows s. With the slopes of the state to parameters until the state unjams
 // (segment_sensitivity.hpp). Unknowns: those of SegmentLaw; independent variable: path parameter e.
 
 #include <optional>
@@ -41,7 +41,7 @@ class PathIntegration {
  private:
   double event(double e, const double* y) const;
   void start_from(const LawState<double>& state);
-  void turn(bool on_the_way);
+  void turn();
   void move_jammed(double e);
   void move_unjammed(double e);
   void take_event();
@@ -58,6 +58,7 @@ class PathIntegration {
   LawState<double> state_;
   std::vector<Slope> slopes_;           // of state_; none once its path is no longer smooth in them
   std::vector<Slope> slopes_at_start_;  // of the unknowns at_start_
+  bool follows_ = false;  // s_r, see model/memory.hpp
   bool jammed_ = true;
   double nu_J_ = 0;  // while unjammed: where it jams again
   std::vector<PathEvent> events_;

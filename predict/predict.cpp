@@ -90,11 +90,13 @@ RowSlope slope_of(const LawState<double>& state, const LawState<double>& slope, 
 std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, const std::vector<PathEvent>& events,
                                      const ValidRange& range) {
   constexpr double slack = 1e-9;  // rounding of a path that ends at the limit
-  double nu_low = range.nu_min, nu_high = range.nu_max, eps_dev = range.eps_dev_max;
+  double nu_low = range.nu_min, nu_high = range.nu_max, eps_dev = 0, eps_vol = 0, shear_path = 0;
   for (const PredictedRow& row : rows) {
     nu_low = std::min(nu_low, row.nu);
     nu_high = std::max(nu_high, row.nu);
     eps_dev = std::max(eps_dev, row.eps_dev);
+    eps_vol = std::max(eps_vol, std::abs(row.eps_vol));
+    shear_path = std::max(shear_path, row.shear_path);
   }
   std::vector<std::string> warnings;
   for (const double nu : {nu_low, nu_high}) {
@@ -106,6 +108,14 @@ std::vector<std::string> warnings_of(const std::vector<PredictedRow>& rows, cons
   if (eps_dev > range.eps_dev_max + slack) {
     warnings.push_back(
         fmt::format("eps_dev = {:.4g} lies beyond the calibrated strain {:.4g}", eps_dev, range.eps_dev_max));
+  }
+  if (eps_vol > range.eps_vol_max + slack) {
+    warnings.push_back(fmt::format("|eps_vol| = {:.4g} lies beyond the calibrated volumetric strain {:.4g}", eps_vol,
+                                   range.eps_vol_max));
+  }
+  if (shear_path > range.shear_path_max + slack) {
+    warnings.push_back(
+        fmt::format("shear_path = {:.4g} is longer than the calibrated {:.4g}", shear_path, range.shear_path_max));
   }
   const auto first = [&](EventKind kind, const char* what) {
     const auto event = std::find_if(events.begin(), events.end(), [&](const PathEvent& e) { return e.kind == kind; });

@@ -115,8 +115,8 @@ struct Sensitivity {
   bool start_from_law = true;           ///< the start is state_from_law() and moves with them; false: it was measured
 };
 
-/// d(row)/d(parameter) at the row's strain, per unit of the parameter. NaN from the first event on whose place moves with
-/// the parameters: where the state unjams, and where Rung::memory reverses under spin within a segment.
+/// d(row)/d(parameter) at the row's strain, per unit of the parameter. NaN from where the state unjams on: that place moves
+/// with the parameters.
 struct RowSlope {
   LawState<double> state;                             ///< of P*, sigma'*, F', s_r
   double s_dev = 0, s_par = 0, F_dev = 0, F_par = 0;  ///< s_par, F_par NaN on a path without shear

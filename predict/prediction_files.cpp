@@ -45,6 +45,7 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
 /// The other way round of rung_to_json().
 void read_rung(const Json& object, PredictionFolder& content) {
   read_fields(object, content.needed);
+  read_fields(object, content.recommended);
   read_fields(object.at("changes"), content.changes);
 }
 
@@ -116,6 +117,7 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
 
 OrderedJson rung_to_json(const PredictionFolder& content) {
   OrderedJson object = fields_to_json(content.needed);
+  object.update(fields_to_json(content.recommended));
   object["changes"] = fields_to_json(content.changes);
   return object;
 }
@@ -146,7 +148,10 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
   document["dem"] = content.dem ? OrderedJson("dem") : OrderedJson(nullptr);
   document["rung"] = rung_to_json(content);
   document["bands"] = content.bands;
+  document["rehearsals"] = content.rehearsals ? fields_to_json(*content.rehearsals) : OrderedJson(nullptr);
+  document["warnings"] = content.warnings;
   document["curves"] = curves;
+  document["failures"] = fields_to_json(content.failures);
   document["provenance"] = OrderedJson(content.provenance);
   write_json(folder / "prediction.json", document);
 }
@@ -163,6 +168,9 @@ PredictionFolder read_prediction(const fs::path& folder) {
     read_rung(document.at("rung"), content);
     content.bands = document.at("bands");
     for (const Json& curve : document.at("curves")) content.curves.push_back(curve_from_json(curve, folder));
+    if (!document.at("rehearsals").is_null()) read_fields(document.at("rehearsals"), content.rehearsals.emplace());
+    content.warnings = document.at("warnings").get<std::vector<std::string>>();
+    read_fields(document.at("failures"), content.failures);
     if (!document.at("dem").is_null()) {
       content.dem = read_dataset(folder / "dem");
       file = folder / "comparison.json";

@@ -58,13 +58,74 @@ constexpr auto fields_of(std::type_identity<RungChange>) {
 }
 static_assert(tells_every_member<RungChange>());
 
+/// A curve that there is not: the law did not converge on it.
+struct FailedCurve {
+  Rung model = Rung::evolution;
+  Initial initial = Initial::law;
+  std::optional<std::uint64_t> seed;  ///< of the DEM run at whose rows it was wanted; none: equal steps
+  std::string error;                  ///< one line
+};
+constexpr auto fields_of(std::type_identity<FailedCurve>) {
+  using C = FailedCurve;
+  return std::tuple{Field{&C::model, "model"}, Field{&C::initial, "initial"}, Field{&C::seed, "seed"},
+                    Field{&C::error, "error"}};
+}
+static_assert(tells_every_member<FailedCurve>());
+
+/// What rehearsals say of one rung on a path.
+struct RehearsedError {
+  LawError error;
+  double whole_curve =
+      std::numeric_limits<double>::quiet_NaN();  ///< `largest` at the path's widest w: half width of a band
+                                                 ///< that holds the whole mean curve [-]
+};
+constexpr auto fields_of(std::type_identity<RehearsedError>) {
+  return std::tuple{Field{&RehearsedError::error, ""}, Field{&RehearsedError::whole_curve, "whole_curve"}};
+}
+static_assert(tells_every_member<RehearsedError>());
+
+struct RehearsedModel {
+  Rung model = Rung::evolution;
+  RehearsedError P_star, s_par, F_par;
+};
+constexpr auto fields_of(std::type_identity<RehearsedModel>) {
+  using M = RehearsedModel;
+  return std::tuple{Field{&M::model, "model"}, Field{&M::P_star, "P_star"}, Field{&M::s_par, "s_par"},
+                    Field{&M::F_par, "F_par"}};
+}
+static_assert(tells_every_member<RehearsedModel>());
+
+/// Whose rehearsals speak for a path, and what they say.
+struct PathRehearsals {
+  PathKind kind = PathKind::monotone;  ///< of the path
+  int paths = 0;                       ///< m
+  bool of_kind = false;                ///< whether they are of its kind; else all there are
+  std::vector<std::string> outside;    ///< in which ways the path goes beyond them
+  double whole_curve_probability = 0;  ///< m/(m + 1)
+  std::vector<RehearsedModel> models;  ///< of the rungs that have curves
+};
+constexpr auto fields_of(std::type_identity<PathRehearsals>) {
+  using R = PathRehearsals;
+  return std::tuple{Field{&R::kind, "kind"},
+                    Field{&R::paths, "paths"},
+                    Field{&R::of_kind, "of_kind"},
+                    Field{&R::outside, "outside"},
+                    Field{&R::whole_curve_probability, "whole_curve_probability"},
+                    Field{&R::models, "models"}};
+}
+static_assert(tells_every_member<PathRehearsals>());
+
 struct PredictionFolder {
   std::string name;  ///< last part of the folder's path
   Path path;
-  RungAdvice needed;                ///< rung that the path needs
+  RungAdvice needed;                ///< rung that the path needs by what it contains
+  RungRecommendation recommended;   ///< rung whose curve is shown first
   std::vector<RungChange> changes;  ///< none where the law decides the strain: no two rows are at the same strain
   std::string bands;                ///< one line: which there are, or why there are none
+  std::optional<PathRehearsals> rehearsals;  ///< none: no path was rehearsed, or the law decides the strain
+  std::vector<std::string> warnings;         ///< of the path, whatever the curve
   std::vector<PredictedCurve> curves;
+  std::vector<FailedCurve> failures;
   std::optional<Dataset> dem;  ///< the runs in dem/
   std::vector<CurveComparison> comparisons;
   Json parameters;  ///< file, sha256, dataset_digest of the parameters used

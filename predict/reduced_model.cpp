@@ -1,9 +1,12 @@
 // Tensor form of Eqs. (17) and (18) on a straight segment, q = sigma'/P, N the segment's direction:
 //   q(e) = s_max N - (s_max N - q_0) exp(-beta_s e),   F'(e) = F_max N - (F_max N - F'_0) exp(-beta_F e)
 // so that what does not lie along N decays. e is the deviatoric strain since the corner; parameters at the current nu.
+// Under spin, dq/de = beta_s (s_max N - q) + W q - q W (law_state.hpp), and likewise F':
+//   q(e) = q_inf + exp(-beta_s e) R (q_0 - q_inf) R^T,   beta_s q_inf - (W q_inf - q_inf W) = beta_s s_max N,   R = exp(W e)
 
 #include "model/reduced_law.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "predict/path_walk.hpp"
@@ -16,9 +19,21 @@ struct Ratios {
   Deviator<double> q = Deviator<double>::Zero(), F = Deviator<double>::Zero();
 };
 
-Deviator<double> saturating_tensor(const Deviator<double>& limit, const Deviator<double>& start, double rate,
-                                   double e) {
-  return limit - (limit - start) * std::exp(-rate * e);
+/// After path parameter `e` towards `limit` N, at `rate` per strain.
+Deviator<double> saturating_tensor(double limit, const Deviator<double>& start, double rate, double e,
+                                   const LawDirection& direction) {
+  Deviator<double> end = limit * direction.N, left = start;
+  if (const double angle = direction.spin.norm() * e; angle > 0) {
+    Eigen::Matrix<double, 5, 5> turning;
+    for (Eigen::Index j = 0; j < 5; ++j)
+      turning.col(j) = corotation(direction.spin, Deviator<double>(Deviator<double>::Unit(j)));
+    const double per_e = rate * direction.de;
+    if (per_e > 0)
+      end = (per_e * turning.Identity() - turning).partialPivLu().solve(per_e * limit * direction.N).eval();
+    const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, direction.spin.normalized()).toRotationMatrix();
+    left = deviator<double>(Eigen::Matrix3d(R * tensor_of(Deviator<double>(start - end)) * R.transpose())) + end;
+  }
+  return end - (end - left) * std::exp(-rate * (direction.de * e));
 }
 
 /// The closed form as walk() follows it. From where the state unjams or jams on, it begins anew from nothing.
@@ -32,7 +47,7 @@ class ReducedForm {
     if (segment_) leave();
     segment_ = &segment;
     index_ = index;
-    direction_ = law_direction(segment.direction);
+    direction_ = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
     from_ = 0;
     // nu passes nu_c once in a segment, down where it was jammed and up where it was not
     crossing_ = std::max(std::log(nu_c_ / segment.nu_start) / direction_.dx, 0.0);
@@ -68,10 +83,9 @@ class ReducedForm {
   }
 
   Ratios ratios_at(double e, double nu) const {
-    const double eps_dev = direction_.de * (e - from_);
     const LawModuli<double> m = along(moduli_at(p_, nu), p_.lode, direction_);
-    return {saturating_tensor(m.s_max * direction_.N, corner_.q, m.beta_s, eps_dev),
-            saturating_tensor(m.F_max * direction_.N, corner_.F, m.beta_F, eps_dev)};
+    return {saturating_tensor(m.s_max, corner_.q, m.beta_s, e - from_, direction_),
+            saturating_tensor(m.F_max, corner_.F, m.beta_F, e - from_, direction_)};
   }
 
   const LawParameters<double>& p_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace grainlaw::predict {
@@ -33,6 +34,30 @@ RungAdvice rung_needed(const LawParameters<double>& parameters, const std::vecto
                 fmt::format("shear of segments[{}] changes P* by {:+.1f} % at constant volume", k, 100 * rise)};
   }
   return advice;
+}
+
+RungRecommendation recommended_rung(const std::vector<Rehearsal>& rehearsals,
+                                    const std::vector<StraightSegment>& segments, const std::vector<Rung>& rungs,
+                                    const RungAdvice& needed) {
+  const Spokesmen spokesmen = spokesmen_for(segments, rehearsals);
+  const std::vector<RungScore> table = scores(spokesmen, rungs);
+  if (table.empty()) {
+    const bool there = std::ranges::find(rungs, needed.rung) != rungs.end();
+    return {there ? needed.rung : rungs.back(), false,
+            "by what the path contains; no path was rehearsed by these rungs"};
+  }
+  const RungScore& best = table.front();
+  std::string why = fmt::format(
+      "best on {} rehearsals ({}), rms error of P* {:.2g} B*, stress ratio {:.2g} s_max, fabric {:.2g} F_max",
+      spokesmen.rehearsals.size(), spokesmen.of_kind ? to_string(spokesmen.kind) : "of all kinds", best.rms[0],
+      best.rms[1], best.rms[2]);
+  for (std::size_t i = 1; i < table.size(); ++i) {
+    std::array<double, 3> times{};
+    for (std::size_t q = 0; q < times.size(); ++q) times[q] = table[i].rms[q] / best.rms[q];
+    why += fmt::format("; {} errs {:.1f}, {:.1f} and {:.1f} times as much", to_string(table[i].rung), times[0],
+                       times[1], times[2]);
+  }
+  return {best.rung, true, why};
 }
 
 RungDifference difference(const Prediction& cheaper, const Prediction& richer) {

@@ -55,6 +55,9 @@ inline Unknowns packed(const LawState<double>& state) {
   return state;
 }
 
+/// What s_r does along N on a segment (model/law.hpp): stays, or follows s.
+enum class Turning { rests, follows };
+
 /// The law on one segment, continued harmlessly past the end of the jammed range, where trial steps of a solver look.
 class SegmentLaw {
  public:
@@ -67,6 +70,12 @@ class SegmentLaw {
         segment_(&segment),
         direction_(law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin))),
         P_held_(P_held) {}
+
+  /// Turning::rests before the first call.
+  void set(Turning turning) { turning_ = turning; }
+
+  /// Whether shear had turned in any state that a rate was asked for, s_r at rest; also in trial steps of a solver.
+  bool turned() const { return least_reversal_ < -kTurned; }
 
   const StraightSegment& segment() const { return *segment_; }
   const LawDirection& direction() const { return direction_; }
@@ -88,9 +97,19 @@ class SegmentLaw {
 
   /// d(state)/de.
   LawState<double> state_rate(double e, const LawState<double>& state) const {
-    LawState<double> held = state;
-    held.P = std::max(state.P, P_held_);
-    return law_rate(at(e).moduli, *p_, rung_, coupling_, held, direction_);
+    const LawState<double> held = this->held(state);
+    const LawModuli<double>& m = at(e).moduli;
+    if (turning_ == Turning::follows) return following_rate(m, *p_, held, direction_);
+    if (rung_ == Rung::memory) least_reversal_ = std::min(least_reversal_, grainlaw::reversal_value(held, direction_));
+    return law_rate(m, *p_, rung_, coupling_, held, direction_);
+  }
+
+  /// Rate of <s - s_r, N> of the turned state with s_r at rest.
+  double reversal_rate(double e, const LawState<double>& state) const {
+    LawState<double> turned = held(state);
+    reverse(turned, direction_);
+    return grainlaw::reversal_rate(turned, law_rate(at(e).moduli, *p_, rung_, coupling_, turned, direction_),
+                                   direction_);
   }
 
   /// dy/de, into `out`.
@@ -112,6 +131,8 @@ class SegmentLaw {
   }
 
  private:
+  static constexpr double kTurned = 1e-12;
+
   /// What depends on the path parameter alone: the expensive part of a rate, and the same for all that a solver asks
   /// at one place (rate, weights, events), hence kept. One object serves one thread.
   struct Place {
@@ -119,6 +140,11 @@ class SegmentLaw {
     double P_ref = 0, g = 0;
     LawModuli<double> moduli{};
   };
+
+  LawState<double> held(LawState<double> state) const {
+    state.P = std::max(state.P, P_held_);
+    return state;
+  }
 
   bool single() const { return rung_ == Rung::evolution && coupling_ == Coupling::single; }
   double a2() const { return rung_ == Rung::memory ? p_->memory.a2 : p_->anisotropy.a2; }
@@ -146,6 +172,8 @@ class SegmentLaw {
   const StraightSegment* segment_;
   LawDirection direction_;
   double P_held_;
+  Turning turning_ = Turning::rests;
+  mutable double least_reversal_ = 0;
   mutable Place place_;
 };
 

@@ -45,6 +45,13 @@ SegmentSensitivity::SegmentSensitivity(const std::vector<ParameterStep>& steps, 
   }
 }
 
+void SegmentSensitivity::set(Turning turning) {
+  for (Pair& pair : pairs_) {
+    pair.above.set(turning);
+    pair.below.set(turning);
+  }
+}
+
 void SegmentSensitivity::rate(std::size_t k, double e, const double* y, const double* s, double* rate) const {
   const Pair& pair = pairs_[k];
   Unknowns above, below;
@@ -68,9 +75,9 @@ Slope SegmentSensitivity::of_state(std::size_t k, double e, const Unknowns& y, c
                   packed(pair.below.state_of(e, moved(y.data(), -pair.h, slope.data()).data())), pair.h);
 }
 
-Slope turned_slope(const LawState<double>& state, const Slope& slope) {
+Slope turned_slope(const LawState<double>& state, const Slope& slope, const LawDirection& direction) {
   LawState<double> d = unpacked(slope.data());
-  d.s_r = (d.sigma - state.sigma * (d.P / state.P)) / state.P;
+  d.s_r += direction.N * reversal_rate(state, d, direction);  // a slope is a rate in the parameter
   return packed(d);
 }
 

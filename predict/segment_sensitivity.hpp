@@ -2,8 +2,8 @@
 // What the parameters change of a state along a straight segment, S_k = dy/dp_k for each parameter p_k, with
 //   dS_k/de = (df/dy) S_k + df/dp_k = [f(y + h S_k; p_k + h) - f(y - h S_k; p_k - h)]/(2h)
 // f the rate of segment_law.hpp (docs/theory/bands.md, section Slopes). CVODES' own differences step by the square root of
-// its tolerance, at the default one ten times as far: far for a nu_c near jamming. Events whose place moves with the
-// parameters are not followed: see RowSlope.
+// its tolerance, at the default one ten times as far: far for a nu_c near jamming. Where the state unjams they
+// end: see RowSlope.
 
 #include <cstddef>
 #include <vector>
@@ -32,6 +32,9 @@ class SegmentSensitivity {
   SegmentSensitivity(const std::vector<ParameterStep>& steps, Rung rung, Coupling coupling,
                      const StraightSegment& segment, double P_held);
 
+  /// As of SegmentLaw.
+  void set(Turning turning);
+
   /// dS_k/de at unknowns `y` and slope `s`, into `rate`.
   void rate(std::size_t k, double e, const double* y, const double* s, double* rate) const;
 
@@ -49,7 +52,8 @@ class SegmentSensitivity {
   std::vector<Pair> pairs_;
 };
 
-/// Slope after a reversal of `state` at a corner of the path.
-Slope turned_slope(const LawState<double>& state, const Slope& slope);
+/// Slope of `state` after reverse(), at a corner of the path or where s_r begins to follow s on the way: also where that
+/// place moves with the parameters, since only the rate of s_r along N jumps there.
+Slope turned_slope(const LawState<double>& state, const Slope& slope, const LawDirection& direction);
 
 }  // namespace grainlaw::predict

@@ -4,6 +4,7 @@
 #include "app/commands/commands.hpp"
 #include "app/terminal/result_text.hpp"
 #include "chain/planning/target_calibration.hpp"
+#include "fit/prior_file.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -21,6 +22,7 @@ struct CalibrateOptions {
   fit::Loss loss = fit::Loss::squares;
   int starts = 1;       ///< of the coupled fits
   bool checks = false;  ///< fits without one packing, likelihood profiles
+  std::string prior;    ///< prior.json of the errors, or "none"; empty: the built-in one
 };
 
 ExitCode calibrate_to_target(const CalibrateOptions& options, chain::CalibrationInput input,
@@ -45,6 +47,10 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   fit_options.starts = options.starts;
   fit_options.profiles = options.checks;
   fit_options.coupling = options.coupling.value_or(fit_options.coupling);
+  if (options.prior == "none")
+    fit_options.prior.reset();
+  else if (!options.prior.empty())
+    fit_options.prior = fit::read_prior(options.prior);
   if (options.target_error) return calibrate_to_target(options, input, fit_options, session);
   const chain::CalibrationResult result = chain::calibrate(input, fit_options, options.output, session);
   print_result(session.json ? json_text(summary_of(result, options.output, session))
@@ -86,6 +92,9 @@ Task declare_calibrate(CLI::App& command) {
   command.add_flag("--checks", options->checks,
                    "fits without each packing in turn, and likelihood profiles of doubtful parameters; takes several "
                    "times as long as the fit");
+  command.add_option("--prior", options->prior,
+                     "prior.json of study prior, by which the errors of few packings are moderated, or none; default: "
+                     "the built-in one");
   return [options](Session& session) { return calibrate(*options, session); };
 }
 

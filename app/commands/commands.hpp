@@ -30,6 +30,8 @@ Task declare_study_integrator(CLI::App& command);
 Task declare_study_dem(CLI::App& command);
 Task declare_study_fit(CLI::App& command);
 Task declare_study_chain(CLI::App& command);
+Task declare_study_bands(CLI::App& command);
+Task declare_study_prior(CLI::App& command);
 
 /// The names of an enum as values of an option.
 template <NamedEnum E>

@@ -4,6 +4,8 @@
 #include "app/commands/commands.hpp"
 #include "app/terminal/result_text.hpp"
 #include "chain/prediction.hpp"
+#include "chain/rehearsals.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -21,6 +23,7 @@ struct PredictOptions {
   std::vector<std::uint64_t> seeds;         ///< of the new packings
   fs::path spec;                            ///< SPEC of the packings; empty: spec.resolved.json beside `parameters`
   fs::path store;                           ///< folder with the runs; empty: that of `parameters`
+  bool rehearse = false;                    ///< keep the runs as a rehearsal of the law
 };
 
 chain::NewRuns new_runs(const PredictOptions& options) {
@@ -29,13 +32,34 @@ chain::NewRuns new_runs(const PredictOptions& options) {
           options.store.empty() ? parent : options.store};
 }
 
+/// Adds the runs in `folder` to the law's rehearsals, also to the law of `input`. The path's own does not count for its bands.
+void keep_as_rehearsal(const PredictOptions& options, const fs::path& folder, const Session& session,
+                       chain::PredictionInput& input) {
+  const fs::path plain = options.output.has_filename() ? options.output : options.output.parent_path();
+  chain::add_rehearsal(options.parameters, folder, plain.filename().string(), session);
+  const chain::PredictionInput again = chain::read_prediction_input(options.parameters, options.path);
+  input.law = again.law;
+  input.parameters = again.parameters;
+}
+
 ExitCode run_prediction(const PredictOptions& options, Session& session) {
+  if (options.rehearse && !options.dem && options.against.empty())
+    throw InvalidInput("predict: --rehearse keeps runs; give --against or --dem too");
   chain::PredictionInput input = chain::read_prediction_input(options.parameters, options.path);
   input.model = options.model;
   input.initial = options.initial;
   if (options.dem) input.new_runs = new_runs(options);
-  if (!options.against.empty()) input.finished_runs = chain::read_runs_of(input.path.path, options.against);
-  const predict::PredictionFolder prediction = chain::predict_path(input, options.output, session);
+  if (!options.against.empty()) {
+    input.finished_runs = chain::read_runs_of(input.path.path, options.against);
+    if (options.rehearse) keep_as_rehearsal(options, options.against, session, input);
+  }
+  predict::PredictionFolder prediction = chain::predict_path(input, options.output, session);
+  if (options.rehearse && options.dem) {
+    keep_as_rehearsal(options, options.output, session, input);
+    input.new_runs.reset();
+    input.finished_runs = chain::read_runs_of(input.path.path, options.output);
+    prediction = chain::predict_path(input, options.output, session);
+  }
   print_result(session.json ? json_text(summary_of(prediction, options.output)) : text_of(prediction, options.output));
   return ExitCode::ok;
 }
@@ -64,6 +88,10 @@ Task declare_predict(CLI::App& command) {
   command.add_option("--spec", options->spec,
                      "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
   command.add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS");
+  command.add_flag(
+      "--rehearse", options->rehearse,
+      "keep the runs of --against or --dem as a rehearsal in PARAMETERS: how far the law is off on them widens "
+      "the bands of other paths");
   return [options](Session& session) { return run_prediction(*options, session); };
 }
 

@@ -70,13 +70,13 @@ std::vector<const PredictedCurve*> distinct_curves(const PredictionFolder& predi
   return distinct;
 }
 
-/// The curve whose bands are drawn: of the rung that the path needs, else of the richest, from the law's own start.
+/// The curve that stands out, with its bands: of the recommended rung, else of the richest, from the law's own start.
 const PredictedCurve* banded_curve(const PredictionFolder& prediction,
                                    const std::vector<const PredictedCurve*>& curves) {
   const PredictedCurve* richest = nullptr;
   for (const PredictedCurve* drawn : curves) {
     if (drawn->initial != Initial::law) continue;
-    if (richest == nullptr || richest->model != prediction.needed.rung) richest = drawn;
+    if (richest == nullptr || richest->model != prediction.recommended.rung) richest = drawn;
   }
   return richest;
 }
@@ -103,7 +103,8 @@ Panel value_panel(const Shown& shown, const Predicted& quantity) {
   const std::vector<const PredictedCurve*> curves = distinct_curves(shown.prediction);
   const PredictedCurve* const banded = banded_curve(shown.prediction, curves);
   for (const PredictedCurve* drawn : curves) {
-    Series& line = panel.series.emplace_back(through(law_line(*drawn), drawn->prediction.rows, x, quantity.of));
+    Series& line = panel.series.emplace_back(
+        through(law_line(*drawn, drawn == banded ? 2.4 : 1.2), drawn->prediction.rows, x, quantity.of));
     if (drawn != banded) continue;
     line.bands.resize(2);
     for (const PredictedRow& row : drawn->prediction.rows) {
@@ -161,8 +162,11 @@ Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_
       .description =
           "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs "
           "on packings that the calibration never saw, lines the predictions of the law. Below them the differences.",
-      .caption = plain(fmt::format("{} The path needs {}: {}. Bands, about that rung's curve from the law's start: {}.",
-                                   runs, to_string(prediction.needed.rung), prediction.needed.why, prediction.bands)),
+      .caption =
+          plain(fmt::format("{} By what it contains the path needs {}: {}. Recommended, the thick line: {}, {}. Bands, "
+                            "about that rung's curve from the law's start: {}.",
+                            runs, to_string(prediction.needed.rung), prediction.needed.why,
+                            to_string(prediction.recommended.rung), prediction.recommended.why, prediction.bands)),
       .sources = sources,
       .panels = panels,
       .columns = 3,

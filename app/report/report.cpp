@@ -83,6 +83,12 @@ Section predictions(const chain::ReportInput& input) {
     const predict::PredictionFolder& prediction = input.predictions[i];
     section.blocks.push_back(open(prediction_figure(prediction, i)));
     std::vector<std::string> said;
+    for (const std::string& warning : prediction.warnings)
+      section.blocks.push_back(open(Warning{prediction.name + ": " + warning}));
+    for (const predict::FailedCurve& failed : prediction.failures) {
+      section.blocks.push_back(
+          open(Warning{fmt::format("{}: {} is left out: {}", prediction.name, to_string(failed.model), failed.error)}));
+    }
     for (const predict::PredictedCurve& drawn : prediction.curves) {
       for (const std::string& warning : drawn.prediction.warnings) {
         if (std::find(said.begin(), said.end(), warning) != said.end()) continue;

@@ -18,6 +18,7 @@ using fit::Claim, fit::Verdict;
 struct Parameter {
   const ParameterInfo& info;
   const Estimate& estimate;
+  bool says_nothing;
 
   bool is_known() const { return estimate.status != Status::not_identified; }
   double published() const { return info.published.value_or(kUndefined); }
@@ -25,7 +26,8 @@ struct Parameter {
 
 std::vector<Parameter> parameters_of(const CalibratedLaw& law) {
   std::vector<Parameter> parameters;
-  for (std::size_t i = 0; i < kParameterCount; ++i) parameters.push_back({parameter_table()[i], law.estimates[i]});
+  for (std::size_t i = 0; i < kParameterCount; ++i)
+    parameters.push_back({parameter_table()[i], law.estimates[i], says_nothing(law, i)});
   return parameters;
 }
 
@@ -39,7 +41,9 @@ Cell estimate_cell(const Parameter& parameter) {
   return estimate.status == Status::fitted ? value : Cell(to_plain(value.text) + " (" + status + ")", value.value);
 }
 
+/// Where it says nothing, the note that says so.
 std::string interval_of(const Parameter& parameter) {
+  if (parameter.says_nothing) return parameter.estimate.note;
   return interval_text(parameter.estimate.value, parameter.estimate.half_width());
 }
 
@@ -122,20 +126,26 @@ Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameter
       {"ours ± standard error", number, [](auto& v) { return measured(v.ours, v.standard_error); }},
       {"published", number, [](auto& v) { return digits(v.published); }},
       {"distance", number, [](auto& v) { return decimals(v.distance, 1); }},
+      {"range", number, [](auto& v) { return significant(v.range, 2); }},
+      {"what matters", number, [](auto& v) { return significant(v.matters, 2); }},
       {"verdict", words, &Verdict::verdict}};
   if (of_parameters) columns.erase(columns.begin() + 3);
-  return table_of(fmt::format("{} against the published: {} agree, {} differ, {} have no error. Distance: difference "
-                              "over the standard error of a difference between our mean and one other packing",
-                              of_parameters ? "Parameters of Tables 2 and 3" : "Curves over density",
-                              count(shown, "agrees"), count(shown, "differs"), count(shown, "no error")),
-                  "calibration.json", shown, columns);
+  return table_of(
+      fmt::format("{} against the published: {} agree, {} differ, {} are inconclusive, {} have no error. "
+                  "Distance: difference over the standard error of a difference between our mean and one "
+                  "other packing; range: what chance may do, 95 %; inconclusive: within a range that is "
+                  "wider than what matters",
+                  of_parameters ? "Parameters of Tables 2 and 3" : "Curves over density", count(shown, "agrees"),
+                  count(shown, "differs"), count(shown, "inconclusive"), count(shown, "no error")),
+      "calibration.json", shown, columns);
 }
 
 Table claim_table(const std::vector<fit::Claim>& claims) {
   return table_of(
-      fmt::format("What the paper says beyond Tables 2 and 3: {} agree, {} differ, {} are undecided. Without a "
-                  "published value the sign is said: ours above zero",
-                  count(claims, "agrees"), count(claims, "differs"), count(claims, "undecided")),
+      fmt::format("What the paper says beyond Tables 2 and 3: {} agree, {} differ, {} are undecided or inconclusive. "
+                  "Without a published value the sign is said: ours above zero. Identities are no evidence",
+                  count(claims, "agrees"), count(claims, "differs"),
+                  count(claims, "undecided") + count(claims, "inconclusive")),
       "calibration.json", claims,
       {{"where", words, &Claim::where},
        {"what", words, &Claim::statement},
@@ -170,11 +180,11 @@ Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
 }
 
 std::string parameter_summary(const CalibratedLaw& law) {
-  std::string text = fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", "parameter", "symbol", "ours ± standard error",
+  std::string text = fmt::format("{:<28} {:<14} {:>26} {:>29} {:>10}\n", "parameter", "symbol", "ours ± standard error",
                                  "95 % interval", "published");
-  text += std::string(104, '-') + "\n";
+  text += std::string(111, '-') + "\n";
   for (const Parameter& p : parameters_of(law)) {
-    text += fmt::format("{:<28} {:<14} {:>26} {:>22} {:>10}\n", p.info.name, p.info.symbol,
+    text += fmt::format("{:<28} {:<14} {:>26} {:>29} {:>10}\n", p.info.name, p.info.symbol,
                         to_plain(estimate_cell(p).text), interval_of(p), significant(p.published(), 5));
   }
   return text;

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "app/report/report.hpp"
+#include "model/files/fields_json.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -14,13 +16,32 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string advice_text(const predict::PredictionFolder& content) {
-  std::string text = fmt::format("needs     {}: {}\n", to_string(content.needed.rung), content.needed.why);
+  std::string text = fmt::format("needs     {}: {}\n", to_string(content.needed.rung), content.needed.why) +
+                     fmt::format("use       {}: {}\n", to_string(content.recommended.rung), content.recommended.why);
   for (const predict::RungChange& change : content.changes) {
     const predict::RungDifference& d = change.difference;
     text +=
         fmt::format("{} instead of {} changes P* by up to {:.1f} %, the stress ratio by {:.4f}, the fabric by {:.4f}\n",
                     to_string(change.richer), to_string(change.cheaper), 100 * d.P, d.s, d.F);
   }
+  return text;
+}
+
+/// Whose rehearsals are in the bands, and the band of whole curves of the recommended rung.
+std::string rehearsals_text(const predict::PredictionFolder& content) {
+  if (!content.rehearsals) return "";
+  const predict::PathRehearsals& said = *content.rehearsals;
+  std::string text =
+      fmt::format("rehearsed {} paths{}, m = {} degrees of freedom", said.paths,
+                  said.of_kind ? fmt::format(" ({})", to_string(said.kind)) : " of all kinds", said.paths);
+  for (const predict::RehearsedModel& model : said.models) {
+    if (model.model != content.recommended.rung) continue;
+    text += fmt::format("; {} as a whole within P* ±{:.2g}, s ±{:.2g}, F ±{:.2g} ({:.0f} %)", to_string(model.model),
+                        model.P_star.whole_curve, model.s_par.whole_curve, model.F_par.whole_curve,
+                        100 * said.whole_curve_probability);
+  }
+  text += "\n";
+  if (!said.outside.empty()) text += fmt::format("          outside rehearsals: {}\n", fmt::join(said.outside, ", "));
   return text;
 }
 
@@ -101,7 +122,12 @@ std::string text_of(const chain::TargetCalibration& calibration, const chain::Pr
 }
 
 OrderedJson summary_of(const predict::PredictionFolder& content, const fs::path& output) {
-  OrderedJson summary{{"folder", output.string()}, {"rung", rung_to_json(content)}, {"bands", content.bands}};
+  OrderedJson summary{{"folder", output.string()},
+                      {"rung", rung_to_json(content)},
+                      {"bands", content.bands},
+                      {"rehearsals", content.rehearsals ? fields_to_json(*content.rehearsals) : OrderedJson(nullptr)},
+                      {"warnings", content.warnings},
+                      {"failures", fields_to_json(content.failures)}};
   OrderedJson& comparisons = summary["comparisons"] = OrderedJson::array();
   for (const predict::CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;
@@ -118,17 +144,31 @@ OrderedJson summary_of(const predict::PredictionFolder& content, const fs::path&
 }
 
 std::string text_of(const predict::PredictionFolder& content, const fs::path& output) {
-  std::string text = advice_text(content) + "bands     " + content.bands + "\n";
+  std::string text = advice_text(content) + "bands     " + content.bands + "\n" + rehearsals_text(content);
+  const auto recommended_first = [&](const auto& entry) { return entry.model != content.recommended.rung; };
+  std::vector<predict::PredictedCurve> curves;
   for (const predict::PredictedCurve& curve : content.curves) {
-    if (curve.seed || curve.prediction.rows.empty()) continue;
+    if (!curve.seed && !curve.prediction.rows.empty()) curves.push_back(curve);
+  }
+  std::ranges::stable_sort(curves, {}, recommended_first);
+  for (const predict::PredictedCurve& curve : curves) {
     const predict::PredictedRow& end = curve.prediction.rows.back();
-    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}\n", to_string(curve.model),
-                        to_string(curve.initial), end.nu, end.state.P, end.s_par, end.F_par,
-                        curve.prediction.unjammed ? "  (unjammed)" : "");
+    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}{}\n",
+                        to_string(curve.model), to_string(curve.initial), end.nu, end.state.P, end.s_par, end.F_par,
+                        curve.prediction.unjammed ? "  (unjammed)" : "",
+                        curve.model == content.recommended.rung ? "  (recommended)" : "");
     text += bands_text(end);
   }
+  for (const predict::FailedCurve& failed : content.failures) {
+    if (!failed.seed)
+      text += fmt::format("{:<9} {:<8} failed: {}\n", to_string(failed.model), to_string(failed.initial), failed.error);
+  }
+  std::vector<predict::CurveComparison> means;
   for (const predict::CurveComparison& entry : content.comparisons) {
-    if (entry.seed) continue;
+    if (!entry.seed) means.push_back(entry);
+  }
+  std::ranges::stable_sort(means, {}, recommended_first);
+  for (const predict::CurveComparison& entry : means) {
     text += fmt::format("{:<9} {:<8}", to_string(entry.model), to_string(entry.initial));
     for (const auto& q : entry.comparison.quantities)
       text += fmt::format("  {} bias {:+.4f} rms {:.1f} %", q.quantity, q.bias, 100 * q.normalised_rms);

@@ -25,7 +25,8 @@ OrderedJson summary_of(const chain::CalibrationResult& result, const std::filesy
 std::string text_of(const chain::TargetCalibration& calibration, const chain::PrecisionTarget& target,
                     const std::filesystem::path& output);
 
-/// The rung that the path needs, the end of each curve with its bands, and how far runs are from it.
+/// The rung that the path needs and the one that is recommended, whose curve comes first; the end of each curve with its
+/// bands, and how far runs are from it.
 std::string text_of(const predict::PredictionFolder& prediction, const std::filesystem::path& output);
 OrderedJson summary_of(const predict::PredictionFolder& prediction, const std::filesystem::path& output);
 

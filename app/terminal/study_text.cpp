@@ -78,4 +78,28 @@ std::string study_text(const predict::IntegratorStudy& study) {
   return text;
 }
 
+std::string study_text(const chain::BandsStudy& study) {
+  std::size_t width = 4;
+  for (const chain::BandCoverage& c : study.coverages) width = std::max(width, c.path.size());
+  std::string text =
+      fmt::format("{:<9} {:<9} {:<{}} {:>2} {:<7} {:>5} {:>3} {:>9} {:>9} {:>9} {:>8} {:>5} {:>7}\n", "model", "kind",
+                  "path", width, "n", "", "rows", "m", "bias/w", "rms/w", "tau/w", "without", "mean", "single");
+  for (const chain::BandCoverage& c : study.coverages) {
+    text += fmt::format(
+        "{:<9} {:<9} {:<{}} {:>2} {:<7} {:>5} {:>3}{} {:>+8.5f} {:>9.5f} {:>9.5f} {:>7.0f}% {:>4.0f}% {:>6.0f}%\n",
+        to_string(c.model), to_string(c.kind), c.path, width, c.packings, to_string(c.quantity), c.rows,
+        c.degrees_of_freedom, c.of_kind ? " " : "*", c.bias, c.rms, c.tau, 100 * c.without, 100 * c.mean,
+        100 * c.single);
+  }
+  text += "* too few others of the kind: all\nover the paths, each left out (least of a path)\n";
+  for (const chain::CoverageSummary& s : study.summaries) {
+    text += fmt::format(
+        "{:<9} {:<7} {:>3} paths  without {:3.0f}%  mean {:5.1f}% ({:.0f})  single run {:5.1f}% ({:.0f})  whole "
+        "curves {:.0f}% of {:.0f}\n",
+        to_string(s.model), to_string(s.quantity), s.paths, 100 * s.without, 100 * s.mean, 100 * s.least_mean,
+        100 * s.single, 100 * s.least_single, 100 * s.whole, 100 * s.promised_whole);
+  }
+  return text;
+}
+
 }  // namespace grainlaw::app

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "chain/studies/bands_study.hpp"
 #include "chain/studies/settings_study.hpp"
 #include "predict/studies/integrator_study.hpp"
 
@@ -13,5 +14,8 @@ std::string study_text(const chain::SettingsStudy& study);
 
 /// The quickest way to the wanted error, by path and integrator, and the batch.
 std::string study_text(const predict::IntegratorStudy& study);
+
+/// Of each rung and path the shares of rows within the bands, then of all paths.
+std::string study_text(const chain::BandsStudy& study);
 
 }  // namespace grainlaw::app

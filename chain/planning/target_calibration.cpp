@@ -102,9 +102,11 @@ TargetCalibration calibrate_for(const PrecisionTarget& target, const dem::Spec& 
   const Work pilot_work = work_of(planned_spec(spec, pilot, target.path));
   const auto at = [&](const PlanSettings& settings) { return planned_spec(spec, settings, target.path); };
   CalibrationResult last;
+  fit::CalibrationOptions by_packings = options;
+  by_packings.prior.reset();  // a plan counts on errors that know as many degrees of freedom as there are packings
   TargetActions actions;
   actions.calibrate = [&](const PlanSettings& settings) {
-    last = calibrate({rounds_of(at(settings))}, options, output, execution);
+    last = calibrate({rounds_of(at(settings))}, by_packings, output, execution);
     return prediction_error(last.calibration.law, target.path, rehearsals(last.dataset));
   };
   actions.explore = [&](const PredictionError& known) {

@@ -1,7 +1,10 @@
 #pragma once
 // Choices of a calibration. Fit windows: equations.md 0.
 
+#include <optional>
+
 #include "fit/statistics/problem.hpp"
+#include "fit/statistics/variance_prior.hpp"
 #include "model/parameters.hpp"
 #include "model/vocabulary/fields.hpp"
 
@@ -20,9 +23,10 @@ struct CalibrationOptions {
   double stress_scale = 0.01;      ///< misfit of s that weighs one [-]
   double fabric_scale = 0.01;      ///< misfit of F that weighs one [-]
   Loss loss = Loss::squares;
-  int starts = 1;         ///< of the coupled stages, search.hpp
-  bool profiles = false;  ///< of doubtful parameters, profile.hpp
-  int threads = 1;        ///< results do not depend on it
+  int starts = 1;                      ///< of the coupled stages, search.hpp
+  bool profiles = false;               ///< of doubtful parameters, profile.hpp
+  int threads = 1;                     ///< results do not depend on it
+  std::optional<VariancePrior> prior;  ///< by which errors are moderated; none: those of the packings at hand alone
 };
 /// What calibration.json keeps of them as `options`; the coupling stands beside them.
 constexpr auto fields_of(std::type_identity<CalibrationOptions>) {

@@ -18,28 +18,39 @@ struct Claim {
   double ours = 0;            ///< [-, Lode angles deg]
   double standard_error = 0;  ///< NaN where there is none
   double published = 0;       ///< NaN: only the sign is said, ours should be above zero
-  std::string verdict;        ///< "agrees", "differs", "undecided" (a sign within its error), "no error"
+  std::string verdict;  ///< "agrees", "inconclusive", "differs", "undecided" (a sign within its error), "no error",
+                        ///< "identity" (exact kinematics, which no measurement could deny)
+  double matters =
+      std::numeric_limits<double>::quiet_NaN();  ///< difference that matters; NaN: of a sign or an identity
 };
 constexpr auto fields_of(std::type_identity<Claim>) {
   using C = Claim;
-  return std::tuple{
-      Field{&C::where, "where"},    Field{&C::statement, "statement"},           Field{&C::nu, "nu"},
-      Field{&C::ours, "ours"},      Field{&C::standard_error, "standard_error"}, Field{&C::published, "published"},
-      Field{&C::verdict, "verdict"}};
+  return std::tuple{Field{&C::where, "where"},
+                    Field{&C::statement, "statement"},
+                    Field{&C::nu, "nu"},
+                    Field{&C::ours, "ours"},
+                    Field{&C::standard_error, "standard_error"},
+                    Field{&C::published, "published"},
+                    Field{&C::matters, "matters"},
+                    Field{&C::verdict, "verdict"}};
 }
 static_assert(tells_every_member<Claim>());
 
-/// Half of the last digit that the paper prints, 0 for what is exact.
+/// Half of the last digit that the paper prints, 0 for what is exact; the difference that matters.
 struct Printed {
   double value = std::numeric_limits<double>::quiet_NaN();
   double half_digit = 0;
+  double matters = 0;
 };
 
-/// Fills in the verdict. A printed value is that of one other packing: SE sqrt(n + 1) times Student's t, and half a digit.
-/// An exact one (no scatter, SE at rounding) must be met to 1e-6. A sign must differ from zero by its 95 % range.
+/// Fills in the verdict. A printed value is that of one other packing: SE sqrt(n + 1) times Student's t, and half a digit;
+/// within this range it agrees if the range is narrower than the difference that matters, else it is inconclusive. An exact
+/// one (no scatter, SE at rounding) must be met to 1e-6 and is then an identity, no evidence. A sign must differ from zero by
+/// its 95 % range.
 void judge(Claim& claim, Printed printed, std::size_t packings);
-/// Likewise of two sides that are said to be equal: agrees when zero lies within the 95 % range of `ours`.
-void judge_equal(Claim& claim, std::size_t packings);
+/// Likewise of two sides that are said to be equal: agrees when zero lies within the 95 % range of `ours` and that is
+/// narrower than `matters`.
+void judge_equal(Claim& claim, double matters, std::size_t packings);
 
 /// All that `tests` (calibration and description) and the fits can speak of, in the order of the paper.
 std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const CalibratedLaw& law,

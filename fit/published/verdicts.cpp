@@ -19,17 +19,23 @@ bool of_shear(std::string_view group) {
   return group.starts_with("steady_") || std::find(shear.begin(), shear.end(), group) != shear.end();
 }
 
-void judge(Verdict& v, bool known, std::size_t packings) {
+/// A moderated error has more degrees of freedom than that of the packings alone.
+void judge(Verdict& v, bool known, std::size_t packings, double degrees_of_freedom) {
   const double n = static_cast<double>(packings);
   if (!known) v.ours = std::nan("");
+  v.matters = difference_that_matters(v.quantity, v.nu, v.published);
   // on its bound a parameter has no error, and nothing is so and so many of none away
-  v.distance = v.standard_error > 0 ? (v.ours - v.published) / (v.standard_error * std::sqrt(n + 1)) : std::nan("");
+  const double scatter = v.standard_error > 0 ? v.standard_error * std::sqrt(n + 1) : std::nan("");
+  v.distance = (v.ours - v.published) / scatter;
+  v.range = packings < 2 ? std::nan("") : student_95(std::fmax(n - 1, degrees_of_freedom)) * scatter;
   if (!known)
     v.verdict = "not identified";
   else if (!std::isfinite(v.distance) || packings < 2)
     v.verdict = "no error";
+  else if (std::abs(v.ours - v.published) > v.range)
+    v.verdict = "differs";
   else
-    v.verdict = std::abs(v.distance) <= student_95(n - 1) ? "agrees" : "differs";
+    v.verdict = v.range <= v.matters ? "agrees" : "inconclusive";
 }
 
 /// `mode` of the laws on an unloading branch and `shear` of those in shear; empty: left out.
@@ -44,8 +50,9 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
     const Estimate& estimate = law.estimates[i];
     const bool stands_for_itself = estimate.status != Status::fixed && !name.starts_with("anisotropy");
     if (!info.published || whose.empty() || !stands_for_itself) continue;
-    Verdict v{whose, info.name, std::nullopt, estimate.value, estimate.standard_error, *fields(published)[i], 0, ""};
-    judge(v, estimate.status != Status::not_identified, packings);
+    Verdict v{whose, info.name, std::nullopt, estimate.value, estimate.standard_error, *fields(published)[i], 0, 0,
+              0,     ""};
+    judge(v, estimate.status != Status::not_identified, packings, estimate.degrees_of_freedom);
     all.push_back(v);
   }
   for (const DensityCurve& curve : density_curves()) {
@@ -61,14 +68,41 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
                 standard_error(law, curve, nu),
                 curve.of(published, nu),
                 0,
+                0,
+                0,
                 ""};
-      judge(v, true, packings);
+      judge(v, true, packings, degrees_of_freedom(law, curve, nu));
       all.push_back(v);
     }
   }
 }
 
 }  // namespace
+
+double difference_that_matters(const std::string& quantity, std::optional<double> nu, double published) {
+  const auto is = [&](const char* name) { return quantity.find(name) != std::string::npos; };
+  const auto of_shear_curve = [&] {
+    return is("stress_ratio_max") ? 0.05 : is("stress_rate") ? 0.2 : is("fabric_max") ? 0.07 : 0.3;
+  };
+  if (nu) {
+    if (is("C_star")) return published * (*nu >= 0.70 - 1e-9 ? 0.01 : 0.02);
+    if (is("rattler_fraction")) return *nu >= 0.78 ? 0.0015 : 0.25 * published;
+    if (is("P_star")) return published * (*nu >= 0.70 - 1e-9 ? 0.02 : 0.05);
+    return published * of_shear_curve();
+  }
+  if (is(".nu_c")) return 0.0025;
+  if (is("overlap.D")) return 0.02;
+  if (is("fabric.g3")) return 0.045;
+  if (is("gamma_p")) return 0.1;
+  if (is(".Q_")) {  // what moves the curve by as much as matters
+    constexpr double middle = 0.74;
+    const LawParameters<double> paper = published_parameters();
+    for (const DensityCurve& curve : density_curves()) {
+      if (quantity.starts_with(std::string(curve.quantity) + ".")) return curve.of(paper, middle) * of_shear_curve();
+    }
+  }
+  return 0.1 * std::abs(published);
+}
 
 std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions,
                                  std::size_t packings) {

@@ -15,8 +15,9 @@ enum class Role {
   calibration,  ///< fitted
   validation,   ///< never shown to a fit
   description,  ///< fitted by laws of its own (Table 2's UNI and D3), which the calibrated law does not read
+  rehearsal,    ///< never shown to a fit; says afterwards how far the law is off on paths that none saw
 };
-constexpr auto names_of(Role) { return std::array{"calibration", "validation", "description"}; }
+constexpr auto names_of(Role) { return std::array{"calibration", "validation", "description", "rehearsal"}; }
 
 /// What a reader of a series must know about the packing it came from.
 struct PackingInfo {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "model/vocabulary/error.hpp"
+#include "predict/path_integration.hpp"
 #include "predict/segment_law.hpp"
 #include "predict/solvers/cvode.hpp"
 #include "predict/solvers/dormand_prince.hpp"
@@ -65,12 +66,22 @@ struct Walker::Impl {
     const auto n = static_cast<long>(std::ceil(segment.length * segment.direction.tensor.norm() / accuracy));
     const double h = segment.length / static_cast<double>(n);
     const LawDirection direction = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
-    turn_corner(rung, state, direction);
     for (long i = 0; i < n; ++i) {
       const double nu = segment.nu(h * static_cast<double>(i));
+      turn_corner(rung, state, direction);
       state = moved(state, h, law_rate(parameters, rung, coupling, state, nu, direction));
     }
     return n;
+  }
+
+  /// The segment as predict() integrates it, through stretches where s_r follows s. Returns its statistics.
+  SolverStatistics through_turns(const StraightSegment& segment, int index, LawState<double>& state) const {
+    PathIntegration integration(parameters, rung, coupling, {state, {}, {}},
+                                {accuracy, kAbsoluteShare * accuracy, Method::adams, kMaxSteps});
+    integration.enter(segment, index);
+    integration.advance(segment.length);
+    state = integration.state();
+    return integration.statistics();
   }
 
   long rhs_evaluations() const {
@@ -113,12 +124,6 @@ Walk Walker::walk(const std::vector<StraightSegment>& segments, const LawState<d
   const long evaluations = self.rhs_evaluations(), steps = self.steps();
   LawState<double> state = start;
   for (std::size_t k = 0; k < segments.size(); ++k) {
-    if (self.rung == Rung::memory && segments[k].eps_dev_rate() > 0 && !segments[k].spin.isZero(0)) {
-      throw InvalidInput(fmt::format(
-          "segments[{}]: shears and spins, where the memory rung may reverse on the way, which walks do not "
-          "follow; use predict()",
-          k));
-    }
     if (!self.cvode && !self.runge_kutta && !self.dormand_prince) {
       walk.steps += self.euler(segments[k], state);
       walk.rhs_evaluations = walk.steps;
@@ -131,7 +136,13 @@ Walk Walker::walk(const std::vector<StraightSegment>& segments, const LawState<d
         throw NotConverged(fmt::format("segments[{}] at path parameter e = {:.9g} of {:.9g}: {}", k, arrival.t,
                                        segments[k].length, arrival.message));
       }
-      state = self.law->state_of(segments[k].length, y.data());
+      if (self.law->turned()) {
+        const SolverStatistics again = self.through_turns(segments[k], static_cast<int>(k), state);
+        walk.steps += again.steps;
+        walk.rhs_evaluations += again.rhs_evaluations;
+      } else {
+        state = self.law->state_of(segments[k].length, y.data());
+      }
     }
     walk.ends.push_back(state);
   }

@@ -35,8 +35,8 @@ class Walker {
   Walker(const Walker&) = delete;
   Walker& operator=(const Walker&) = delete;
 
-  /// From `start`, jammed, to the end of `segments`. Throws NotConverged where the solver fails, InvalidInput for
-  /// Rung::memory on a segment that shears and spins: reversals on the way are events, which predict() follows.
+  /// From `start`, jammed, to the end of `segments`. Where shear turns within a segment (Rung::memory), that is walked as
+  /// predict() does, but by euler, which turns the state before each substep. Throws NotConverged where the solver fails.
   Walk walk(const std::vector<StraightSegment>& segments, const LawState<double>& start);
 
  private:

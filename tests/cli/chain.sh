@@ -78,6 +78,32 @@ jq 'del(.covariance, .scatter)' out/parameters.json >plain.json
 grep -q '^bands     none: the parameters have no covariance' text && [[ $(tail -n 1 plain/evolution-law.csv) == *,,,,,,,,,, ]] ||
   fail "without covariance: $(cat text)"
 
+# a path becomes a rehearsal: in parameters.json, beside the data set, and in the bands of other paths, not of its own
+"$grainlaw" predict out/parameters.json path.json -o alone >text0
+grep -q "the law's own error is not in them" text0 || fail "silent about the law's own error: $(cat text0)"
+jq -e '.rung.recommended == .rung.needed and (.rung.rehearsed | not) and .rehearsals == null' alone/prediction.json >/dev/null || fail "advice without rehearsals"
+cp -r out rehearsed
+"$grainlaw" predict rehearsed/parameters.json path.json -o rehearsed/uni --against out/predictions/uni --rehearse >/dev/null 2>log || fail "--rehearse: $(cat log)"
+[[ -s rehearsed/dataset/rehearsals/uni/UNI-0.72-s3.csv ]] || fail "the runs were not kept"
+jq -e '[.rehearsals[] | .name, .kind, .packings] == ["uni", "monotone", 2]' rehearsed/parameters.json >/dev/null || fail "no record"
+jq -e '.rehearsals == null and (.bands | contains("not in them"))' rehearsed/uni/prediction.json >/dev/null || fail "a path spoke for itself"
+"$grainlaw" predict rehearsed/parameters.json other.json -o rehearsed/other >text
+grep -q '^rehearsed 1 paths of all kinds, m = 1' text && jq -e '.rung.rehearsed and .rehearsals.paths == 1' rehearsed/other/prediction.json >/dev/null ||
+  fail "a rehearsal does not speak for another path: $(cat text)"
+width() { tail -n 1 "$1" | cut -d, -f 29; }  # P_star_mean95
+"$grainlaw" predict out/parameters.json other.json -o other >/dev/null
+awk -v a="$(width rehearsed/other/evolution-law.csv)" -v b="$(width other/evolution-law.csv)" 'BEGIN { exit !(a > b) }' || fail "the band did not grow"
+# refitted from the data set it is found again; a second path makes two, and each can be left out
+"$grainlaw" calibrate --dataset rehearsed -o refitted --quiet >/dev/null
+diff <(jq .rehearsals rehearsed/parameters.json) <(jq .rehearsals refitted/parameters.json) || fail "rehearsals got lost"
+"$grainlaw" predict refitted/parameters.json other.json -o refitted/predictions/other --dem --seeds 3 --spec out/spec.resolved.json --store out --rehearse >/dev/null 2>log ||
+  fail "--dem --rehearse: $(cat log)"
+"$grainlaw" study bands refitted -o bands >text || fail "study bands"
+jq -e '(.summaries | length) >= 6 and .summaries[0].paths == 2' bands/study.json >/dev/null || fail "study bands: $(cat text)"
+code=0
+"$grainlaw" predict out/parameters.json path.json -o bad --rehearse 2>err || code=$?
+[[ $code == 2 && ! -e bad ]] || fail "--rehearse without runs"
+
 "$grainlaw" report out -o report.html >table.txt
 [[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report
 find . -name '.*tmp*' | grep -q . && fail "temporary files left"

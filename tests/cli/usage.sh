@@ -9,7 +9,7 @@ code_of() { local code=0; "$@" >out 2>err || code=$?; echo "$code"; }
 for command in simulate calibrate predict report study; do
   grep -q "^  $command " out || fail "help does not list $command"
 done
-for command in simulate calibrate predict report "study integrator" "study dem" "study fit" "study chain"; do
+for command in simulate calibrate predict report "study integrator" "study dem" "study fit" "study chain" "study prior"; do
   [[ $(code_of "$grainlaw" $command --help) == 0 && ! -s err ]] || fail "$command --help"
   grep -q 'Exit codes: 0 ok, 1 failure, 2 invalid input or usage, 3 did not converge, 130 interrupted' out || fail "$command: exit codes"
   for option in --threads --json --quiet; do grep -q -- "$option" out || fail "$command: $option"; done

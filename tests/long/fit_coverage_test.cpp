@@ -27,6 +27,42 @@ TEST_P(Coverage, F2F3CompleteCalibration) {
   testing::expect_coverage(name, coverage, least, most);
 }
 
+// Moderated (docs/theory/fit.md): from two packings on, both losses, over several priors.
+class CoverageModerated : public Coverage {};
+
+TEST_P(CoverageModerated, IsotropicLaws) {
+  CoverageStudy study = GetParam();
+  study.sets = 2000;
+  study.priors = 40;
+  const testing::Coverage coverage = testing::coverage_of_isotropic_laws(study);
+  testing::coverage_table("moderated.isotropic." + study.name(), coverage);
+  testing::expect_coverage("moderated.isotropic." + study.name(), coverage, 0.93, 1);
+}
+
+TEST_P(CoverageModerated, CompleteCalibration) {
+  const CoverageStudy& study = GetParam();
+  const testing::Coverage coverage = testing::coverage_of_calibration(study);
+  testing::coverage_table("moderated." + study.name(), coverage);
+  testing::expect_coverage("moderated." + study.name(), coverage, 0.90, 1);
+}
+
+const auto kNameOfStudy = [](const auto& study) {
+  std::string name = study.param.name();
+  std::replace(name.begin(), name.end(), '.', '_');
+  return name;
+};
+
+INSTANTIATE_TEST_SUITE_P(Studies, CoverageModerated,
+                         ::testing::Values(CoverageStudy{300, 2, 0.9, 0.02, 1000000, fit::Loss::squares, 10},
+                                           CoverageStudy{300, 3, 0.9, 0.02, 1100000, fit::Loss::squares, 10},
+                                           CoverageStudy{300, 5, 0.9, 0.02, 1200000, fit::Loss::squares, 10},
+                                           CoverageStudy{300, 10, 0.9, 0.02, 1300000, fit::Loss::squares, 10},
+                                           CoverageStudy{300, 2, 0.9, 0.02, 1400000, fit::Loss::huber, 10},
+                                           CoverageStudy{300, 3, 0.9, 0.02, 1500000, fit::Loss::huber, 10},
+                                           CoverageStudy{300, 5, 0.9, 0.02, 1600000, fit::Loss::huber, 10},
+                                           CoverageStudy{300, 10, 0.9, 0.02, 1700000, fit::Loss::huber, 10}),
+                         kNameOfStudy);
+
 INSTANTIATE_TEST_SUITE_P(
     Studies, Coverage,
     ::testing::Values(CoverageStudy{1000, 3, 0, 0, 100000}, CoverageStudy{2000, 5, 0, 0, 200000},
@@ -34,11 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
                       CoverageStudy{1000, 3, 0.9, 0, 500000}, CoverageStudy{1000, 5, 0.9, 0, 600000},
                       CoverageStudy{1000, 10, 0.9, 0, 700000}, CoverageStudy{1000, 3, 0.9, 0.02, 800000},
                       CoverageStudy{300, 3, 0.9, 0.02, 900000, fit::Loss::huber}),
-    [](const auto& study) {
-      std::string name = study.param.name();
-      std::replace(name.begin(), name.end(), '.', '_');
-      return name;
-    });
+    kNameOfStudy);
 
 }  // namespace
 }  // namespace grainlaw

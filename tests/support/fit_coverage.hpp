@@ -41,14 +41,45 @@ struct CoverageStudy {
   double packing_scatter = 0;  ///< standard deviation of a packing's factors, relative
   std::uint64_t first_seed = 0;
   fit::Loss loss = fit::Loss::squares;
+  int priors = 0;  ///< moderated by so many priors in turn, each of many packings of the same kind; 0: not
 
   std::string name() const {
-    return fmt::format("{}_packings{}{}{}", packings,
+    return fmt::format("{}_packings{}{}{}{}", packings,
                        correlation > 0 ? fmt::format("_rho_{:g}", correlation) : "_white",
                        packing_scatter > 0 ? fmt::format("_scatter_{:g}", packing_scatter) : "",
-                       loss == fit::Loss::huber ? "_huber" : "");
+                       loss == fit::Loss::huber ? "_huber" : "", priors > 0 ? "_moderated" : "");
+  }
+
+  /// Likewise, of other data.
+  CoverageStudy with(int other_packings, std::uint64_t other_first_seed) const {
+    CoverageStudy other = *this;
+    other.packings = other_packings;
+    other.first_seed = other_first_seed;
+    return other;
   }
 };
+
+template <class Fitted>
+fit::VariancePrior prior_of_study(const CoverageStudy& study, int which, Fitted fitted) {
+  const std::uint64_t others = 1000000000 + 100 * study.first_seed + 10000 * static_cast<std::uint64_t>(which);
+  const fit::SizedLaw many = fitted(study.with(64, others), 0);
+  std::vector<fit::SizedLaw> parts;
+  for (const int packings : {2, 3, 5}) {
+    const CoverageStudy few = study.with(packings, others + 1000 * static_cast<std::uint64_t>(packings));
+    for (int k = 0; k < 16; ++k) parts.push_back(fitted(few, k));
+  }
+  return fit::variance_prior(many, parts);
+}
+
+/// The priors that as many packings as one would simulate once give, `fitted` being a fit to set k of a study's data: each of
+/// 64 packings, and of 16 sets each of 2, 3 and 5. None of these data are judged by it. One prior is itself off by chance (64
+/// packings know a standard error to 9 %), the same way for all sets: its degrees of freedom speak of the mean over priors.
+template <class Fitted>
+std::vector<fit::VariancePrior> priors_of_study(const CoverageStudy& study, Fitted fitted) {
+  std::vector<fit::VariancePrior> priors;
+  for (int which = 0; which < study.priors; ++which) priors.push_back(prior_of_study(study, which, fitted));
+  return priors;
+}
 
 class RowNoise {
  public:
@@ -155,28 +186,41 @@ class Coverage {
 
 inline constexpr double kNoise = 0.01;
 
-/// Eqs. (11), (12), (14), (13) and g3 from the ISO unloading of the packings.
-inline Coverage coverage_of_isotropic_laws(const CoverageStudy& study) {
+/// Eqs. (11), (12), (14), (13) and g3 from the ISO unloading of the packings: of set `k`, without moderation.
+inline fit::SizedLaw fit_of_isotropic_laws(const CoverageStudy& study, int k) {
   const LawParameters<double> truth = interior_truth();
   SyntheticOptions options;
   options.rows = 40;
   SyntheticDataset maker(truth, options);
-  std::vector<TestRecord> clean{
+  std::vector<TestRecord> tests{
       maker.test("d2", 1, 0.70, {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.05)})};  // a data set needs one
   for (int seed = 1; seed <= study.packings; ++seed)
-    clean.push_back(maker.isotropic_unloading(static_cast<std::uint64_t>(seed)));
+    tests.push_back(maker.isotropic_unloading(static_cast<std::uint64_t>(seed)));
   fit::CalibrationOptions choices;
   choices.loss = study.loss;
+  RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation, study.packing_scatter);
+  for (TestRecord& test : tests) noise.add_to(test);
+  const auto series = fit::isotropic_series(fit::check_and_sort(tests), {});
+  fit::Calibration found = fit::nothing_known();
+  found.law.parameters = truth;
+  fit::fit_unloading_laws("F2", series, found, choices, {});
+  found.law.covariance = found.errors.covariance();
+  return {found.law, fit::size_of(tests)};
+}
+
+inline Coverage coverage_of_isotropic_laws(const CoverageStudy& study) {
+  const std::vector<fit::VariancePrior> priors = priors_of_study(study, fit_of_isotropic_laws);
   Coverage coverage;
   for (int k = 0; k < study.sets; ++k) {
-    std::vector<TestRecord> tests = clean;
-    RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation, study.packing_scatter);
-    for (TestRecord& test : tests) noise.add_to(test);
-    const auto series = fit::isotropic_series(fit::check_and_sort(tests), {});
-    fit::Calibration found = fit::nothing_known();
-    found.law.parameters = truth;
-    fit::fit_unloading_laws("F2", series, found, choices, {});
-    for (const fit::Stage& stage : found.stages) coverage.add(stage.estimates, truth);
+    fit::SizedLaw found = fit_of_isotropic_laws(study, k);
+    if (!priors.empty()) moderate(priors[static_cast<std::size_t>(k) % priors.size()], found.size, found.law);
+    for (std::size_t i = 0; i < kParameterCount; ++i) {
+      const Status status = found.law.estimates[i].status;
+      const std::string name = parameter_table()[i].name;
+      const bool free = name.starts_with("coordination") || name.starts_with("rattlers") ||
+                        name.starts_with("pressure") || name == "overlap.D" || name == "fabric.g3";
+      if (free && status != Status::fixed) coverage.add({name, found.law.estimates[i]}, interior_truth());
+    }
   }
   return coverage;
 }
@@ -226,41 +270,69 @@ inline LawParameters<double> medians(const std::vector<CalibratedLaw>& found) {
 /// that meet such data best. By Huber's loss, whose reach is the noise's, it is the median over the sets. Few rows and long
 /// steps, for speed; they are the same for the truth. lambda and kappa are as fitted to the paper's data: with lambda = 150 the
 /// fabric has caught up within a third of a row, and 12 rows cannot tell the two apart.
-inline Coverage coverage_of_calibration(const CoverageStudy& study) {
-  LawParameters<double> truth = interior_truth();
-  truth.memory = {0.8, 0.7, 2.5, 26, 40, 10, 1.1, 0.7, 0.67, 1.18};
-  truth.lode = {0.03, 0.8};
-  SyntheticOptions options;
-  options.rows = 12;
-  options.rung = Rung::memory;
-  SyntheticDataset maker(truth, options);
-  std::vector<TestRecord> clean;
-  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(study.packings); ++seed) {
-    clean.push_back(maker.isotropic_unloading(seed));
-    for (const double nu : {0.68, 0.72, 0.80}) {
-      clean.push_back(maker.test(fmt::format("d2-{}-s{}", nu, seed), seed, nu,
-                                 {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.24)}));
-    }
-    clean.push_back(
-        maker.test(fmt::format("d3-s{}", seed), seed, 0.80, {synthetic_segment(Mode::D3, ExtentKind::eps_dev, 0.24)}));
-    clean.push_back(maker.test(fmt::format("d2-iso-s{}", seed), seed, 0.70,
-                               {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.15),
-                                synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.73)}));
+class CompleteCalibration {
+ public:
+  CompleteCalibration() : truth_(interior_truth()) {
+    truth_.memory = {0.8, 0.7, 2.5, 26, 40, 10, 1.1, 0.7, 0.67, 1.18};
+    truth_.lode = {0.03, 0.8};
   }
-  fit::CalibrationOptions calibration;
-  calibration.max_step = 1e-2;
-  calibration.stiffness_window = 0.04;
-  calibration.loss = study.loss;
-  LawParameters<double> target = fit::calibrate(clean, calibration, {}).law.parameters;
+
+  /// Without noise.
+  std::vector<TestRecord> clean(int packings) const {
+    SyntheticOptions options;
+    options.rows = 12;
+    options.rung = Rung::memory;
+    SyntheticDataset maker(truth_, options);
+    std::vector<TestRecord> tests;
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(packings); ++seed) {
+      tests.push_back(maker.isotropic_unloading(seed));
+      for (const double nu : {0.68, 0.72, 0.80}) {
+        tests.push_back(maker.test(fmt::format("d2-{}-s{}", nu, seed), seed, nu,
+                                   {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.24)}));
+      }
+      tests.push_back(maker.test(fmt::format("d3-s{}", seed), seed, 0.80,
+                                 {synthetic_segment(Mode::D3, ExtentKind::eps_dev, 0.24)}));
+      tests.push_back(maker.test(fmt::format("d2-iso-s{}", seed), seed, 0.70,
+                                 {synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.15),
+                                  synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.73)}));
+    }
+    return tests;
+  }
+
+  static fit::SizedLaw fitted(const std::vector<TestRecord>& tests, fit::Loss loss) {
+    fit::CalibrationOptions options;
+    options.max_step = 1e-2;
+    options.stiffness_window = 0.04;
+    options.loss = loss;
+    return {fit::calibrate(tests, options, {}).law, fit::size_of(tests)};
+  }
+
+  /// Set `k` of the study.
+  fit::SizedLaw fitted(const CoverageStudy& study, int k) const { return fitted(clean(study.packings), study, k); }
+
+  static fit::SizedLaw fitted(std::vector<TestRecord> tests, const CoverageStudy& study, int k) {
+    RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation, study.packing_scatter);
+    for (TestRecord& test : tests) noise.add_to(test);
+    return fitted(tests, study.loss);
+  }
+
+ private:
+  LawParameters<double> truth_;
+};
+
+inline Coverage coverage_of_calibration(const CoverageStudy& study) {
+  const CompleteCalibration scene;
+  const std::vector<TestRecord> clean = scene.clean(study.packings);
+  LawParameters<double> target = scene.fitted(clean, study.loss).law.parameters;
   std::vector<CalibratedLaw> found(static_cast<std::size_t>(study.sets));
+  const std::vector<fit::VariancePrior> priors =
+      priors_of_study(study, [&](const CoverageStudy& other, int k) { return scene.fitted(other, k); });
   std::atomic<int> next = 0;
   const auto work = [&] {
     for (int k = next++; k < study.sets; k = next++) {
-      std::vector<TestRecord> tests = clean;
-      RowNoise noise(kNoise, study.first_seed + static_cast<std::uint64_t>(k), study.correlation,
-                     study.packing_scatter);
-      for (TestRecord& test : tests) noise.add_to(test);
-      found[static_cast<std::size_t>(k)] = fit::calibrate(tests, calibration, {}).law;
+      fit::SizedLaw one = CompleteCalibration::fitted(clean, study, k);
+      if (!priors.empty()) moderate(priors[static_cast<std::size_t>(k) % priors.size()], one.size, one.law);
+      found[static_cast<std::size_t>(k)] = one.law;
     }
   };
   {

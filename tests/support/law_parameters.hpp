@@ -12,4 +12,11 @@ inline LawParameters<double> coupled_parameters() {
   return p;
 }
 
+/// The same with numbers of the memory's size.
+inline LawParameters<double> memory_parameters() {
+  LawParameters<double> p = coupled_parameters();
+  p.memory = {0.8, 0.7, 2.5, 10, 45, 10, 1.1, 0.7, 0.6, 1.18};
+  return p;
+}
+
 }  // namespace grainlaw::testing

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "model/calibrated_law.hpp"
+#include "model/files/fields_json.hpp"
+#include "model/files/path_json.hpp"
 
 namespace grainlaw::testing {
 
@@ -42,6 +44,14 @@ inline CalibratedLaw odd_law() {
   law.range.nu_max = 0.82;
   law.range.eps_dev_max = 1.0 / 3;
   law.range.eps_vol_max = 0.2;
+  law.range.shear_path_max = 2.0 / 3;
+  law.rehearsals = {{"there-and-back",
+                     PathKind::cyclic,
+                     {0.1 + 0.6, 0.82, 1.0 / 7, 1.0 / 3, -1, 1.0 / 9, 4, 3, true},
+                     5,
+                     {{Rung::memory, {211, 1.0 / 3, 0.1, 2.0 / 7}, {0, 0, 0, 0}, {211, 0.4, 1.0 / 11, 3}},
+                      {Rung::reduced, {}, {}, {}}},
+                     {0.7, Branch::loading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 1.0 / 30}}}}};
   law.dataset_digest = std::string(64, 'b');
   return law;
 }
@@ -70,6 +80,12 @@ inline void expect_same(const CalibratedLaw& a, const CalibratedLaw& b) {
   EXPECT_EQ(a.range.nu_max, b.range.nu_max);
   EXPECT_EQ(a.range.eps_dev_max, b.range.eps_dev_max);
   EXPECT_EQ(a.range.eps_vol_max, b.range.eps_vol_max);
+  EXPECT_EQ(a.range.shear_path_max, b.range.shear_path_max);
+  ASSERT_EQ(a.rehearsals.size(), b.rehearsals.size());
+  for (std::size_t i = 0; i < a.rehearsals.size(); ++i) {
+    EXPECT_EQ(fields_to_json(a.rehearsals[i]), fields_to_json(b.rehearsals[i]));
+    EXPECT_EQ(path_to_json(a.rehearsals[i].path), path_to_json(b.rehearsals[i].path));
+  }
 }
 
 }  // namespace grainlaw::testing

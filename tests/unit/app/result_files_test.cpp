@@ -151,6 +151,11 @@ predict::PredictionFolder small_prediction(const std::filesystem::path& folder) 
     content.curves.push_back(curve);
   }
   content.needed = {Rung::memory, "because"};
+  content.recommended = {Rung::evolution, true, "by far"};
+  content.rehearsals = {PathKind::turning, 7,     true,
+                        {"nu up to 0.8"},  0.875, {{Rung::evolution, {{0.1, 7, 0.2, 0.3}, 0.4}, {}, {}}}};
+  content.warnings = {"outside rehearsals"};
+  content.failures = {{Rung::memory, predict::Initial::law, 4, "too hard"}};
   content.changes = {{Rung::reduced, Rung::evolution, {0.1, 0.02, 0.003}}};
   content.bands = "of the mean curve";
   content.curves[0].prediction.rows[1].single.s_dev = 0.0123;
@@ -179,6 +184,18 @@ TEST_F(ResultFiles, PredictionIsReadBack) {
   EXPECT_TRUE(std::isnan(read.curves[0].prediction.rows[1].mean.s_dev)) << "no band";
   EXPECT_EQ(read.needed.rung, Rung::memory);
   EXPECT_EQ(read.needed.why, "because");
+  EXPECT_EQ(read.recommended.rung, Rung::evolution);
+  EXPECT_TRUE(read.recommended.rehearsed);
+  EXPECT_EQ(read.recommended.why, "by far");
+  ASSERT_TRUE(read.rehearsals);
+  EXPECT_EQ(read.rehearsals->kind, PathKind::turning);
+  EXPECT_EQ(read.rehearsals->outside, std::vector<std::string>{"nu up to 0.8"});
+  EXPECT_EQ(read.rehearsals->models.at(0).P_star.error.largest, 0.3);
+  EXPECT_EQ(read.rehearsals->models.at(0).P_star.whole_curve, 0.4);
+  EXPECT_EQ(read.warnings, std::vector<std::string>{"outside rehearsals"});
+  ASSERT_EQ(read.failures.size(), 1u);
+  EXPECT_EQ(read.failures[0].seed, 4u);
+  EXPECT_EQ(read.failures[0].error, "too hard");
   ASSERT_EQ(read.changes.size(), 1u);
   EXPECT_EQ(read.changes[0].richer, Rung::evolution);
   EXPECT_EQ(read.changes[0].difference.F, 0.003);

@@ -34,7 +34,7 @@ TEST(SchemaCheck, NamesFileKeyReasonAndRemedyInOneLine) {
   EXPECT_EQ(schema_refusal(R"({"tests": [{"mode": "D2"}]})"),
             "s.json: tests[0]: misses the key 'role'; give calibration tests are fitted, validation tests never, "
             "description tests "
-            "by laws of their own");
+            "by laws of their own; on rehearsals the law is judged");
   EXPECT_EQ(schema_refusal(R"({"driving": "sine"})"),
             "s.json: driving: got \"sine\"; give \"cosine\" or \"constant\" (profile of the strain rate in time)");
   EXPECT_EQ(

@@ -63,7 +63,7 @@ TEST(LawQuantities, PredictionsHaveTheErrorOfTheirBands) {
   predict::Prediction prediction = predict::predict(
       Rung::evolution, c.law.parameters, c.law.coupling, segments, predict::state_from_law(c.law.parameters, path.nu),
       predict::uniform_points(segments, 100), {}, {}, {}, {uncertain_parameters(c.law), true});
-  predict::add_bands(c.law, prediction);
+  predict::add_bands(c.law, segments, prediction);
   ASSERT_EQ(quantities.size(), 3u);
   for (Eigen::Index i = 1; i < quantities[0].values.size(); ++i) {
     const predict::PredictedRow& row = prediction.rows[static_cast<std::size_t>(i)];

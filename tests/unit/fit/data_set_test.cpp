@@ -123,6 +123,12 @@ TEST(DataSet, NoticesUnitsAndSwappedColumns) {
   expect_refusal(tests, {tests[1].name, "row 1", "P_star", "mean overlap", "units"});
 }
 
+TEST(DataSet, RefusesSpin) {
+  std::vector<TestRecord> tests = small_set();
+  tests[1].path.segments[0].spin << 0, -1, 0, 1, 0, 0, 0, 0, 0;
+  expect_refusal(tests, {"test " + tests[1].name, "segments[0]", "spins"});
+}
+
 TEST(DataSet, NoticesATestGivenTwice) {
   std::vector<TestRecord> tests = small_set();
   tests.push_back(tests[1]);

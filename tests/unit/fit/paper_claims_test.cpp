@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "fit/staged_laws.hpp"
 #include "model/student.hpp"
@@ -68,13 +69,15 @@ TEST(PaperClaims, APrintedValueMayBeOffByItsScatterAndHalfADigit) {
   const double reach = student_95(4) * std::sqrt(6.0) * 0.01 + 0.05;
   for (const double off : {0.99 * reach, -0.99 * reach, 1.01 * reach, -1.01 * reach}) {
     Claim c{"", "", 0, 9.5 + off, 0.01, 0, ""};
-    judge(c, {9.5, 0.05}, 5);
+    judge(c, {9.5, 0.05, 1.01 * reach}, 5);
     EXPECT_EQ(c.verdict, std::abs(off) < reach ? "agrees" : "differs") << off;
+    judge(c, {9.5, 0.05, 0.99 * reach}, 5);
+    EXPECT_EQ(c.verdict, std::abs(off) < reach ? "inconclusive" : "differs") << "a range wider than what matters";
   }
 }
 
 TEST(PaperClaims, ExactKinematicsNeedsNoScatter) {
-  for (const auto& [ours, verdict] : {std::pair{1.5 + 1e-7, "agrees"}, {1.5 + 1e-5, "differs"}}) {
+  for (const auto& [ours, verdict] : {std::pair{1.5 + 1e-7, "identity"}, {1.5 + 1e-5, "differs"}}) {
     Claim c{"", "", 0, ours, std::nan(""), 0, ""};
     judge(c, {1.5, 0}, 1);
     EXPECT_EQ(c.verdict, verdict);
@@ -84,9 +87,20 @@ TEST(PaperClaims, ExactKinematicsNeedsNoScatter) {
 TEST(PaperClaims, OnePackingDecidesNothing) {
   Claim sign{"", "", 0, 1, 0.001, 0, ""}, equal = sign;
   judge(sign, {}, 1);
-  judge_equal(equal, 1);
+  judge_equal(equal, 1, 1);
   EXPECT_EQ(sign.verdict, "no error");
   EXPECT_EQ(equal.verdict, "no error");
+}
+
+TEST(PaperClaims, EqualSidesAgreeOnlyIfADifferenceThatMattersWouldShow) {
+  const double range = student_95(4) * 0.01;
+  for (const auto& [ours, matters, verdict] : {std::tuple{0.9 * range, 1.1 * range, "agrees"},
+                                               {0.9 * range, 0.9 * range, "inconclusive"},
+                                               {1.1 * range, 9 * range, "differs"}}) {
+    Claim c{"", "", 0, ours, 0.01, 0, ""};
+    judge_equal(c, matters, 5);
+    EXPECT_EQ(c.verdict, verdict);
+  }
 }
 
 TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
@@ -111,9 +125,9 @@ TEST(PaperClaims, BranchesAndModesAreComparedPackingByPacking) {
   EXPECT_EQ(fabric.verdict, "differs");
   EXPECT_NEAR(fabric.ours, -0.01 + 7.5e-5, 1e-9);
   EXPECT_NEAR(fabric.nu, 0.70, 1e-12);
-  EXPECT_EQ(find(claims, "D3: deviatoric strain over strain of z").verdict, "agrees");
+  EXPECT_EQ(find(claims, "D3: deviatoric strain over strain of z").verdict, "identity");
   EXPECT_NEAR(find(claims, "D2: deviatoric strain over strain of z").ours, std::numbers::sqrt3, 1e-12);
-  EXPECT_EQ(find(claims, "D2: Lode angle of strain [deg]").verdict, "agrees");
+  EXPECT_EQ(find(claims, "D2: Lode angle of strain [deg]").verdict, "identity");
 }
 
 TEST(PaperClaims, JammingDensitiesAreOrdered) {

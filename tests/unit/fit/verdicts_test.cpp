@@ -11,8 +11,8 @@
 namespace grainlaw::fit {
 namespace {
 
-/// The published laws of `mode`, the parameters of `groups` with errors of 1 %.
-Calibration published(const std::string& mode, const std::vector<std::string>& groups) {
+/// The published laws of `mode`, the parameters of `groups` with errors of this part of them.
+Calibration published(const std::string& mode, const std::vector<std::string>& groups, double part = 0.01) {
   Calibration c = nothing_known();
   c.law.parameters = published_parameters(mode);
   c.law.range.nu_min = 0.69;
@@ -20,7 +20,7 @@ Calibration published(const std::string& mode, const std::vector<std::string>& g
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string name = parameter_table()[i].name;
     if (std::find(groups.begin(), groups.end(), name.substr(0, name.find('.'))) == groups.end()) continue;
-    const double value = *fields(c.law.parameters)[i], error = 0.01 * std::max(value, 0.1);
+    const double value = *fields(c.law.parameters)[i], error = part * std::max(value, 0.1);
     c.law.estimates[i] = {value, error, Status::fitted, ""};
     c.law.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = error * error;
   }
@@ -47,6 +47,34 @@ TEST(Verdicts, AgreeWithinTheRangeOfStudentsT) {
   }
 }
 
+TEST(Verdicts, AnIntervalWiderThanWhatMattersAgreesWithNothing) {
+  const std::size_t i = parameter_index("coordination.nu_c");
+  const double half = difference_that_matters("coordination.nu_c", {}, 0.6646) / (student_95(4) * std::sqrt(6.0));
+  for (const auto& [error, verdict] : {std::pair{0.99 * half, "agrees"}, {1.01 * half, "inconclusive"}}) {
+    Calibration c = published("", {"coordination"});
+    c.law.estimates[i].standard_error = error;
+    EXPECT_EQ(find(verdicts_of(c.law, {}, 5), "ISO", "coordination.nu_c").verdict, verdict);
+    c.law.estimates[i].value += 0.01;  // four times what matters
+    EXPECT_EQ(find(verdicts_of(c.law, {}, 5), "ISO", "coordination.nu_c").verdict, "differs");
+    c.law.estimates[i].degrees_of_freedom = 40;  // of a moderated error
+    EXPECT_NEAR(find(verdicts_of(c.law, {}, 5), "ISO", "coordination.nu_c").range,
+                student_95(40) * std::sqrt(6.) * error, 1e-12);
+  }
+}
+
+TEST(Verdicts, WhatMattersIsSaidOfEveryNumber) {
+  const Calibration c = published(
+      "", {"coordination", "rattlers", "pressure", "steady_coordination", "steady_rattlers", "steady_pressure",
+           "overlap", "fabric", "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"});
+  for (const Verdict& v : verdicts_of(c.law, {}, 5)) {
+    EXPECT_GT(v.matters, 0) << v.quantity;
+    EXPECT_LE(v.matters, v.nu ? 0.35 * v.published : std::max(0.3 * v.published, 10.)) << v.quantity;
+  }
+  EXPECT_NEAR(difference_that_matters("P_star", 0.70, 0.016), 0.02 * 0.016, 1e-15);
+  EXPECT_NEAR(difference_that_matters("steady_C_star", 0.68, 6), 0.12, 1e-15);
+  EXPECT_NEAR(difference_that_matters("rattler_fraction", 0.80, 0.01), 0.0015, 1e-15);
+}
+
 TEST(Verdicts, SayWhatCannotBeJudged) {
   Calibration c = published("", {"coordination"});
   c.law.estimates[parameter_index("coordination.alpha")].standard_error = std::nan("");
@@ -69,10 +97,10 @@ TEST(Verdicts, AParameterOnItsBoundHasNoDistance) {
 
 TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
   const std::vector<Description> modes{
-      {"UNI", published("UNI", {"coordination", "rattlers", "pressure"})},
-      {"D3", published("D3", {"steady_coordination", "steady_rattlers", "steady_pressure", "fabric_max"})}};
+      {"UNI", published("UNI", {"coordination", "rattlers", "pressure"}, 1e-5)},
+      {"D3", published("D3", {"steady_coordination", "steady_rattlers", "steady_pressure", "fabric_max"}, 1e-5)}};
   const std::vector<Verdict> all =
-      verdicts_of(published("", {"coordination", "steady_coordination", "stress_rate"}).law, modes, 5);
+      verdicts_of(published("", {"coordination", "steady_coordination", "stress_rate"}, 1e-5).law, modes, 5);
   EXPECT_EQ(find(all, "UNI", "coordination.C1").published, 8.37);
   EXPECT_EQ(find(all, "D3", "steady_pressure.nu_c").published, 0.6583);
   EXPECT_EQ(find(all, "ISO", "coordination.C1").published, 8.2720);

@@ -117,7 +117,11 @@ TEST(CalibratedLaw, BandsNeedErrorsAndTwoPackings) {
   EXPECT_EQ(uncertain_parameters(law), (std::vector<std::size_t>{3, 7}));
   EXPECT_TRUE(available_bands(law).starts_with("95 %, of the mean curve only: ")) << available_bands(law);
   law.scatter = {2, 5, 1e-3, 0.02, 0.01};
-  EXPECT_EQ(available_bands(law), "95 %, of the mean curve and of a single run");
+  EXPECT_EQ(available_bands(law),
+            "95 %, of the mean curve and of a single run; the law's own error is not in them: no other "
+            "path was rehearsed");
+  law.rehearsals.emplace_back();
+  EXPECT_EQ(available_bands(law), "95 %, of the mean curve and of a single run; with the law's own error");
 }
 
 TEST(Estimate, IntervalsAreStudents) {
@@ -132,6 +136,23 @@ TEST(Status, IsFoundByItsName) {
   EXPECT_EQ(to_string(Status::at_bound), "at_bound");
   EXPECT_EQ(refusal([] { value_of<Status>("sure", "status"); }),
             "status: 'sure' is none; give one of fitted, fixed, tied, at_bound, not_identified");
+}
+
+TEST(CalibratedLaw, AnIntervalSaysNothingThatIsWiderThanTheParameterMayBe) {
+  CalibratedLaw law;
+  const auto with = [&](const char* name, double value, double half_width) {
+    const std::size_t i = parameter_index(name);
+    law.estimates[i] = {value, half_width / student_95(1), Status::fitted, "", 1};
+    return says_nothing(law, i);
+  };
+  EXPECT_TRUE(with("stress_rate.alpha", 2, 1225));
+  EXPECT_FALSE(with("stress_rate.alpha", 2, 9)) << "contains zero, but not 11 and more";
+  EXPECT_FALSE(with("stress_rate.alpha", 40, 39));
+  EXPECT_TRUE(with("pressure.nu_c", 0.66, 0.021));
+  EXPECT_FALSE(with("pressure.nu_c", 0.66, 0.019));
+  EXPECT_FALSE(with("fabric_max.Q_limit", 0.01, 0.09)) << "as large as its Q_c may be";
+  law.estimates[0] = {8, std::nan(""), Status::fixed, ""};
+  EXPECT_FALSE(says_nothing(law, 0)) << "no interval";
 }
 
 }  // namespace

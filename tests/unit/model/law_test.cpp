@@ -182,7 +182,7 @@ TEST(Law, OnlyMemoryTurnsCorners) {
     y.F.setZero();
     ASSERT_LT(reversal_value(y, back), 0);
     turn_corner(rung, y, back);
-    EXPECT_LE((y.s_r - (rung == Rung::memory ? 1.0 : 0.0) * y.sigma / y.P).norm(), 0);
+    EXPECT_LE((y.s_r - (rung == Rung::memory ? 1.0 : 0.0) * y.sigma / y.P).norm(), 1e-16);
   }
 }
 

@@ -253,6 +253,13 @@ TEST(Predict, WarnsOncePerKindOutsideTheCalibratedRange) {
     EXPECT_EQ(warnings[1], "nu = 0.82 lies outside the calibrated range 0.7-0.8");
     EXPECT_EQ(warnings[2], "eps_dev = 0.3 lies beyond the calibrated strain 0.15");
   }
+  // volume and the way sheared have limits of their own: there and back ends where it began
+  const ValidRange narrow{0.60, 0.90, 0.30, 0.05, 0.30};
+  const auto to_and_fro = path_from(0.72, {leg(Mode::D2, 0.2), leg(Mode::D2, 0.2, true), leg_to(Mode::ISO, 0.78)});
+  const auto warnings = run(Rung::evolution, to_and_fro, uniform_points(to_and_fro, 50), narrow).warnings;
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0], "|eps_vol| = 0.08004 lies beyond the calibrated volumetric strain 0.05");
+  EXPECT_EQ(warnings[1], "shear_path = 0.4 is longer than the calibrated 0.3");
   const auto inside = path_from(0.70, {leg_to(Mode::UNI, 0.80)});
   EXPECT_TRUE(run(Rung::evolution, inside, uniform_points(inside, 10), range).warnings.empty())
       << "the limits belong to it";

@@ -32,6 +32,29 @@ TEST(RungAdvice, SaysWhy) {
   EXPECT_NE(dilates.why.find("changes P* by +39"), std::string::npos) << dilates.why;
 }
 
+TEST(RungAdvice, RehearsalsOverruleWhatThePathContains) {
+  const auto path = path_from(0.72, {leg_to(Mode::UNI, 0.8)});
+  const RungAdvice advice = rung_needed(published_parameters(), path);
+  ASSERT_EQ(advice.rung, Rung::evolution);
+  const std::vector<Rung> rungs{Rung::reduced, Rung::evolution, Rung::memory};
+  const RungRecommendation without = recommended_rung({}, path, rungs, advice);
+  EXPECT_EQ(without.rung, Rung::evolution);
+  EXPECT_FALSE(without.rehearsed);
+  EXPECT_NE(without.why.find("no path was rehearsed"), std::string::npos);
+  EXPECT_EQ(recommended_rung({}, path, {Rung::memory}, advice).rung, Rung::memory) << "all there is";
+
+  Rehearsal r;
+  r.path = {0.70, Branch::unloading, {leg_to(Mode::UNI, 0.8)}};
+  const auto off = [](double error) { return RehearsedQuantity{90, error * error, 0, error}; };
+  r.rungs = {{Rung::reduced, off(0.001), off(0.05), off(0.05)},
+             {Rung::evolution, off(0.001), off(0.05), off(0.20)},
+             {Rung::memory, off(0.0005), off(0.05), off(0.05)}};
+  const RungRecommendation with = recommended_rung({r}, path, rungs, advice);
+  EXPECT_EQ(with.rung, Rung::memory);
+  EXPECT_TRUE(with.rehearsed);
+  EXPECT_NE(with.why.find("evolution errs 2.0, 1.0 and 4.0 times as much"), std::string::npos) << with.why;
+}
+
 TEST(RungAdvice, DifferenceIsTheLargestOverCommonRows) {
   Prediction a, b;
   PredictedRow row;

@@ -16,17 +16,6 @@ using testing::leg;
 using testing::leg_to;
 using testing::path_from;
 
-LawParameters<double> parameters() {
-  LawParameters<double> p = published_parameters();
-  p.anisotropy.a2 = 1.18;
-  p.memory = {0.8, 0.7, 2.5, 10, 45, 10, 1.1, 0.7, 0.6, 1.18};
-  return p;
-}
-
-LawState<double> sum(const LawState<double>& y, double h, const LawState<double>& k) {
-  return {y.P + h * k.P, y.sigma + h * k.sigma, y.F + h * k.F, y.s_r + h * k.s_r, y.E + h * k.E};
-}
-
 std::vector<LawState<double>> corners_by_runge_kutta(const LawParameters<double>& p,
                                                      const std::vector<StraightSegment>& path, LawState<double> y,
                                                      int steps) {
@@ -40,9 +29,9 @@ std::vector<LawState<double>> corners_by_runge_kutta(const LawParameters<double>
         return law_rate(p, Rung::memory, Coupling::energy, at, segment.nu(e), d);
       };
       const double e = i * h;
-      const auto k1 = f(e, y), k2 = f(e + h / 2, sum(y, h / 2, k1)), k3 = f(e + h / 2, sum(y, h / 2, k2)),
-                 k4 = f(e + h, sum(y, h, k3));
-      y = sum(sum(sum(sum(y, h / 6, k1), h / 3, k2), h / 3, k3), h / 6, k4);
+      const auto k1 = f(e, y), k2 = f(e + h / 2, moved(y, h / 2, k1)), k3 = f(e + h / 2, moved(y, h / 2, k2)),
+                 k4 = f(e + h, moved(y, h, k3));
+      y = moved(moved(moved(moved(y, h / 6, k1), h / 3, k2), h / 3, k3), h / 6, k4);
     }
     out.push_back(y);
   }
@@ -56,7 +45,7 @@ std::vector<OutputPoint> ends(const std::vector<StraightSegment>& path) {
 }
 
 TEST(Memory, TwoIntegratorsAgree) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::memory_parameters();
   const auto paths = {
       path_from(0.69, {leg(Mode::D2, 0.1), leg(Mode::D2, 0.2, true), leg(Mode::D2, 0.07)}),
       path_from(0.695, {leg_to(Mode::UNI, 0.80), leg_to(Mode::UNI, 0.72, true)}),
@@ -77,7 +66,7 @@ TEST(Memory, TwoIntegratorsAgree) {
 }
 
 TEST(Memory, PressureRisesInShearAndDipsWhereItTurns) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::memory_parameters();
   const auto path = path_from(0.69, {leg(Mode::D2, 0.5), leg(Mode::D2, 0.5, true)});
   const auto points = uniform_points(path, 300);
   const auto rows = predict(Rung::memory, p, Coupling::energy, path, state_from_law(p, 0.69), points, {}, {}, {}).rows;
@@ -101,7 +90,7 @@ TEST(Memory, PressureRisesInShearAndDipsWhereItTurns) {
 }
 
 TEST(Memory, SpinTurnsTheStateAndNothingElse) {
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::memory_parameters();
   auto path = path_from(0.70, {leg(Mode::D2, 0.1), leg(Mode::D2, 0.1)});
   path[1].direction.tensor.setZero();
   path[1].length = std::acos(-1.0) / 2;
@@ -121,7 +110,7 @@ TEST(Memory, SpinTurnsTheStateAndNothingElse) {
 
 TEST(Memory, PassesTheJammingDensityOfTheReferenceWhileItCarries) {
   // After shear P is above the reference; on expansion it vanishes at the density nu_c nu/nu_P, below nu_c.
-  const LawParameters<double> p = parameters();
+  const LawParameters<double> p = testing::memory_parameters();
   const auto path = path_from(0.675, {leg(Mode::D2, 0.2), leg(Mode::ISO, 0.03, true)});
   const auto prediction =
       predict(Rung::memory, p, Coupling::energy, path, state_from_law(p, 0.675), uniform_points(path, 200), {}, {}, {});

@@ -1,0 +1,41 @@
+// grainlaw study bands FOLDER: whether bands hold on paths that are left out of what they are made of.
+
+#include "app/commands/commands.hpp"
+#include "app/terminal/study_text.hpp"
+#include "chain/studies/bands_study.hpp"
+#include "model/files/output.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BandsOptions {
+  fs::path folder;             ///< of a calibration
+  std::vector<fs::path> runs;  ///< more rehearsals
+  fs::path output;             ///< folder for study.json
+};
+
+ExitCode study_bands(const BandsOptions& options, Session& session) {
+  const chain::BandsStudy study = chain::study_bands(options.folder, options.runs, session);
+  make_output_folder(options.output);
+  OrderedJson document = chain::study_to_json(study);
+  document["provenance"] = provenance(session);
+  write_json(options.output / "study.json", document);
+  print_result(session.json ? json_text(document)
+                            : study_text(study) + (options.output / "study.json").string() + "\n");
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+Task declare_study_bands(CLI::App& command) {
+  const auto options = std::make_shared<BandsOptions>();
+  command.add_option("FOLDER", options->folder, "folder of a calibration with rehearsals")->required();
+  command.add_option("--runs", options->runs,
+                     "more rehearsals: folders of data sets, or of predictions with --dem, of one path each");
+  command.add_option("-o,--output", options->output, "folder for study.json")->required();
+  return [options](Session& session) { return study_bands(*options, session); };
+}
+
+}  // namespace grainlaw::app

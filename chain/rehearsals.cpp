@@ -1,0 +1,140 @@
+#include "chain/rehearsals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/files/output.hpp"
+#include "model/files/path_json.hpp"
+#include "model/parameters_file.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::chain {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_fitted(const PackingInfo& packing, const Dataset& dataset) {
+  return std::ranges::any_of(dataset.tests, [&](const DatasetTest& test) {
+    const PackingInfo& other = test.record.packing;
+    return test.record.role == Role::calibration && other.seed == packing.seed &&
+           other.particles == packing.particles && other.mean_radius == packing.mean_radius;
+  });
+}
+
+/// "UNI-0.695" of "UNI-0.695-s11".
+std::string name_of_path(const TestRecord& run) {
+  const std::string seed = fmt::format("-s{}", run.packing.seed);
+  return run.name.ends_with(seed) ? run.name.substr(0, run.name.size() - seed.size()) : run.name;
+}
+
+std::vector<predict::RehearsalRuns> by_path(const std::vector<TestRecord>& runs, const Dataset* dataset) {
+  std::vector<predict::RehearsalRuns> paths;
+  for (const TestRecord& run : runs) {
+    const Json path = Json(path_to_json(run.path));
+    auto found = std::ranges::find_if(paths, [&](const predict::RehearsalRuns& known) {
+      return Json(path_to_json(known.runs.front().path)) == path;
+    });
+    if (found == paths.end()) found = paths.insert(paths.end(), {name_of_path(run), {}, false});
+    found->runs.push_back(run);
+    if (dataset != nullptr && is_fitted(run.packing, *dataset)) found->fitted_packings = true;
+  }
+  return paths;
+}
+
+std::vector<fs::path> rehearsal_folders(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code absent;
+  for (const auto& entry : fs::directory_iterator(folder / kRehearsalsFolder, absent)) {
+    if (fs::exists(entry.path() / "dataset.json")) folders.push_back(entry.path());
+  }
+  std::ranges::sort(folders);
+  return folders;
+}
+
+}  // namespace
+
+std::vector<predict::RehearsalRuns> read_rehearsals(const fs::path& given, const std::string& name,
+                                                    const Dataset* dataset) {
+  const fs::path folder = dataset_folder(given);
+  const Dataset runs = read_dataset(folder);
+  std::vector<TestRecord> records;
+  for (const DatasetTest& test : runs.tests) {
+    if (test.record.role == Role::calibration) {
+      throw InvalidInput(fmt::format("{}: test {} is of role calibration; a rehearsal is a path that no fit has seen",
+                                     folder.string(), test.record.name));
+    }
+    records.push_back(test.record);
+  }
+  std::vector<predict::RehearsalRuns> paths = by_path(records, dataset);
+  if (paths.size() == 1) paths.front().name = name;
+  return paths;
+}
+
+std::vector<predict::RehearsalRuns> rehearsals_of(const Dataset& dataset, const fs::path& folder) {
+  std::vector<predict::RehearsalRuns> all = by_path(tests_of(dataset, Role::rehearsal), &dataset);
+  for (const fs::path& each : rehearsal_folders(folder)) {
+    for (predict::RehearsalRuns& path : read_rehearsals(each, each.filename().string(), &dataset))
+      all.push_back(std::move(path));
+  }
+  return all;
+}
+
+void adopt_rehearsals(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  if (fs::equivalent(from, to, error)) return;
+  for (const fs::path& each : rehearsal_folders(from)) {
+    adopt(read_dataset(each), each, make_subfolder(make_subfolder(to, kRehearsalsFolder), each.filename().string()));
+  }
+}
+
+std::vector<Rung> calibrated_rungs(const CalibratedLaw& law) {
+  std::vector<Rung> rungs;
+  for (const Rung rung : kRungs) {
+    if (!missing_parameter(law, rung)) rungs.push_back(rung);
+  }
+  return rungs;
+}
+
+void rehearse(CalibratedLaw& law, const std::vector<predict::RehearsalRuns>& paths, const Execution& execution) {
+  law.rehearsals.clear();
+  const std::vector<Rung> rungs = calibrated_rungs(law);
+  for (const predict::RehearsalRuns& path : paths) {
+    std::vector<std::string> failures;
+    try {
+      law.rehearsals.push_back(predict::rehearsal_of(law, rungs, path, {{}, execution.stop}, failures));
+    } catch (const InvalidInput& error) {
+      failures.push_back(fmt::format("rehearsal {} is left out: {}", path.name, error.what()));
+    }
+    for (const std::string& failure : failures) execution.watch.log("warning: " + failure);
+  }
+}
+
+void add_rehearsal(const fs::path& parameters, const fs::path& given, const std::string& name,
+                   const Execution& execution) {
+  if (!is_safe_name(name))
+    throw InvalidInput(fmt::format("rehearsal '{}': letters, digits, '.', '-' and '_' make a name", name));
+  ParametersFile file = read_parameters(parameters);
+  const fs::path beside = parameters.has_parent_path() ? parameters.parent_path() : fs::path(".");
+  std::optional<Dataset> fitted;
+  if (fs::exists(beside / "dataset" / "dataset.json")) fitted = read_dataset(beside / "dataset");
+  const auto paths = read_rehearsals(given, name, fitted ? &*fitted : nullptr);
+  if (paths.size() != 1)
+    throw InvalidInput(fmt::format("{}: holds runs of {} paths; a rehearsal is one", given.string(), paths.size()));
+  std::vector<std::string> failures;
+  Rehearsal added =
+      predict::rehearsal_of(file.law, calibrated_rungs(file.law), paths.front(), {{}, execution.stop}, failures);
+  if (added.rungs.empty() && !failures.empty()) throw NotConverged(failures.front());
+  for (const std::string& failure : failures) execution.watch.log("warning: " + failure);
+  std::erase_if(file.law.rehearsals, [&](const Rehearsal& known) {
+    return known.name == name || Json(path_to_json(known.path)) == Json(path_to_json(added.path));
+  });
+  file.law.rehearsals.push_back(std::move(added));
+  if (fitted) {
+    const fs::path from = dataset_folder(given);
+    adopt(read_dataset(from), from, make_subfolder(make_subfolder(beside / "dataset", kRehearsalsFolder), name));
+  }
+  write_parameters(parameters, file);
+}
+
+}  // namespace grainlaw::chain
