@@ -25,7 +25,7 @@ constexpr double kMeanFieldPressure = 0.87 / (2 * std::numbers::pi);  // P* over
 constexpr double kLeastFabric = 0.9, kMostFabric = 2;  // F_v over nu C, nu (C + 3 phi_r): g3 = 1 ... 1.63
 constexpr double kTurned = 0.1;                        // shear after which stress and fabric have come to its direction
 constexpr double kAligned = 0.93;                      // cosine of a mean over shear to its direction
-constexpr double kFewSpheres = 1000;                   // where their number is not told
+constexpr double kSpheres = 10000;                     // where their number is not told
 
 bool near(double a, double b) { return std::abs(a - b) <= 0.02 * std::abs(b); }
 
@@ -293,7 +293,7 @@ class SeriesCheck {
   }
 
   double scatter(double of_one) const {
-    return of_one / std::sqrt(packing_.particles > 0 ? static_cast<double>(packing_.particles) : kFewSpheres);
+    return of_one / std::sqrt(packing_.particles > 0 ? static_cast<double>(packing_.particles) : kSpheres);
   }
 
   Deviator<double> stress_ratio(const Observation& o) const {
@@ -362,7 +362,7 @@ class SeriesCheck {
     for (const auto& [sum, name] : {std::pair{s, "stress"}, {F, "fabric"}}) {
       const Deviator<double> mean = sum / rows;
       const double along = mean.dot(N_), across = (mean - along * N_).norm();
-      if (across <= 0.7 * along + scatter(2) || !points_along_with_other_columns(mean)) continue;
+      if (across <= 0.7 * along + scatter(4) || !points_along_with_other_columns(mean)) continue;
       refuse(
           last, name,
           fmt::format("its deviator{} is {:.3g} along the shear and {:.3g} across it, in the mean from {} of the shear "
