@@ -115,6 +115,14 @@ Deviator<T> corotation(const Eigen::Vector3d& spin, const Deviator<T>& q) {
   return deviator<T>(Matrix3<T>(W * a - a * W));
 }
 
+/// `q` after rotation by the spin vector times `e`.
+inline Deviator<double> rotated(const Deviator<double>& q, const Eigen::Vector3d& spin, double e) {
+  const double angle = spin.norm() * e;
+  if (angle == 0) return q;
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, spin.normalized()).toRotationMatrix();
+  return deviator<double>(Eigen::Matrix3d(R * tensor_of(q) * R.transpose()));
+}
+
 /// Adds the corotational terms of `direction` to the rate of `y`: of every deviator.
 template <class T>
 void add_corotation(const LawState<T>& y, const LawDirection& direction, LawState<T>& rate) {

@@ -23,15 +23,14 @@ struct Ratios {
 Deviator<double> saturating_tensor(double limit, const Deviator<double>& start, double rate, double e,
                                    const LawDirection& direction) {
   Deviator<double> end = limit * direction.N, left = start;
-  if (const double angle = direction.spin.norm() * e; angle > 0) {
+  if (!direction.spin.isZero(0)) {
     Eigen::Matrix<double, 5, 5> turning;
     for (Eigen::Index j = 0; j < 5; ++j)
       turning.col(j) = corotation(direction.spin, Deviator<double>(Deviator<double>::Unit(j)));
     const double per_e = rate * direction.de;
     if (per_e > 0)
       end = (per_e * turning.Identity() - turning).partialPivLu().solve(per_e * limit * direction.N).eval();
-    const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, direction.spin.normalized()).toRotationMatrix();
-    left = deviator<double>(Eigen::Matrix3d(R * tensor_of(Deviator<double>(start - end)) * R.transpose())) + end;
+    left = rotated(start - end, direction.spin, e) + end;
   }
   return end - (end - left) * std::exp(-rate * (direction.de * e));
 }

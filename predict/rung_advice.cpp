@@ -19,13 +19,16 @@ RungAdvice rung_needed(const LawParameters<double>& parameters, const std::vecto
   Deviator<double> N = Deviator<double>::Zero();
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const StraightSegment& segment = segments[k];
-    const LawDirection direction = law_direction(segment.direction);
+    const LawDirection direction = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
     const bool volume = std::abs(direction.dx) > kNoStrain;
     if (direction.de > 0 && direction.N.dot(N) < 0)
       return {Rung::memory, fmt::format("segments[{}] turns the shear back", k)};
     if (volume && (direction.de > 0 || !N.isZero()) && advice.rung == Rung::reduced)
       advice = {Rung::evolution, fmt::format("segments[{}] changes the volume of a sheared state", k)};
     if (direction.de > 0) N = direction.N;
+    N = rotated(N, direction.spin, segment.length);  // the state, where shear does not hold it
+    if (direction.de > 0 && direction.N.dot(N) < 0)
+      return {Rung::memory, fmt::format("the spin of segments[{}] turns the state against its shear", k)};
     if (volume || direction.de == 0 || advice.rung == Rung::memory) continue;
     const double P = parameters.isotropic.P_star(segment.nu_start),
                  rise = parameters.steady.P_star(segment.nu_start) / P - 1;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # tests/acceptance/house.sh [--quick] [--base DIR]: whether the house is in order and gives the old results, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short; "aim" before a bound: wanted, not required
+# The digits are those of the house alone: at 3373ed0 none differed. Since d122e73 the memory's law is another, and its numbers differ.
 # The old results are those of b8135ea, whose sources and build/release lie in DIR; without it they are made in build/house/base.
 # --quick: lines, files and arrows, what a change touches, and with --base the digits of the refit. Otherwise also the changes
 # built and tested, the quickstart's digits, a folder of the old program taken up, the installed libraries, and speeds.

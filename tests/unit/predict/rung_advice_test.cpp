@@ -32,6 +32,17 @@ TEST(RungAdvice, SaysWhy) {
   EXPECT_NE(dilates.why.find("changes P* by +39"), std::string::npos) << dilates.why;
 }
 
+TEST(RungAdvice, SpinTurnsTheStateAgainstItsShear) {
+  auto path = path_from(0.80, {leg(Mode::D2, 0.1), leg(Mode::D2, 0.1)});
+  const auto spun_by = [&path](double angle) {
+    path[1].spin(0, 2) = angle / path[1].length;
+    path[1].spin(2, 0) = -path[1].spin(0, 2);
+    return rung_needed(published_parameters(), path);
+  };
+  EXPECT_EQ(spun_by(0.5).rung, Rung::reduced);
+  EXPECT_EQ(spun_by(1.5).why, "the spin of segments[1] turns the state against its shear");
+}
+
 TEST(RungAdvice, RehearsalsOverruleWhatThePathContains) {
   const auto path = path_from(0.72, {leg_to(Mode::UNI, 0.8)});
   const RungAdvice advice = rung_needed(published_parameters(), path);
