@@ -132,14 +132,13 @@ Walk Walker::walk(const std::vector<StraightSegment>& segments, const LawState<d
       turn_corner(self.rung, state, self.law->direction());
       Unknowns y = self.law->unknowns_of(0, state);
       const Arrival arrival = self.advance(y, segments[k].length);
-      if (arrival.kind != Arrival::Kind::reached) {
-        throw NotConverged(fmt::format("segments[{}] at path parameter e = {:.9g} of {:.9g}: {}", k, arrival.t,
-                                       segments[k].length, arrival.message));
-      }
-      if (self.law->turned()) {
+      if (self.law->turned()) {  // also what may have made the solver fail
         const SolverStatistics again = self.through_turns(segments[k], static_cast<int>(k), state);
         walk.steps += again.steps;
         walk.rhs_evaluations += again.rhs_evaluations;
+      } else if (arrival.kind != Arrival::Kind::reached) {
+        throw NotConverged(fmt::format("segments[{}] at path parameter e = {:.9g} of {:.9g}: {}", k, arrival.t,
+                                       segments[k].length, arrival.message));
       } else {
         state = self.law->state_of(segments[k].length, y.data());
       }
