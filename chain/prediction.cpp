@@ -211,6 +211,11 @@ void add_path_warnings(predict::PredictionFolder& content) {
         "preparation, are those of that branch",
         to_string(content.path.branch)));
   }
+  const auto spins = [](const PathSegment& segment) { return !segment.spin.isZero(0); };
+  if (std::ranges::any_of(content.path.segments, spins)) {
+    content.warnings.emplace_back(
+        "the path spins, which nothing that was calibrated or rehearsed does; how far the law is off there is not known");
+  }
 }
 
 /// Which bands there are: a path does not speak for itself, so one that alone was rehearsed has none of the law's own error.

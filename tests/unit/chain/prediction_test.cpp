@@ -100,6 +100,14 @@ TEST_F(PathPrediction, WarnsOfABranchThatTheLawDoesNotKnow) {
   EXPECT_TRUE(warnings[0].starts_with("initial.branch \"loading\"")) << warnings[0];
 }
 
+TEST_F(PathPrediction, WarnsOfSpin) {
+  PredictionInput spinning = input({});
+  spinning.path.path.segments[0].spin << 0, -1, 0, 1, 0, 0, 0, 0, 0;
+  const auto warnings = predict_path(spinning, out(), {}).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings[0].starts_with("the path spins")) << warnings[0];
+}
+
 TEST_F(PathPrediction, LabelsAPathOutsideRehearsals) {
   PredictionInput rehearsed = input({});
   const Path other{0.73, Branch::unloading, {leg_to(Mode::UNI, 0.79)}};
