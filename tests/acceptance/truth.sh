@@ -60,7 +60,12 @@ few_packings() {
   [[ $quick == yes ]] && executable=verification_fit
   "$bin/$executable" --gtest_filter='*CoverageModerated*' >"$out/few.txt" 2>&1 || true
   figure few.failed "$(sed -n 's/^ *\([0-9]*\) FAILED TEST.*/\1/p' "$out/few.txt" | grep . || echo 0)" "<=0"
-  while read -r _ name value bound; do figure "few.$name" "$value" "<=$bound"; done < <(grep '^figure ' "$out/few.txt")
+  while read -r _ name value _; do  # the goals, which are narrower than the tests' own bounds
+    case $name in
+      *.not_covered_at_most) figure "few.$name" "$value" "<=0.07" ;;
+      *.covered_at_most) figure "few.$name" "$value" "<=0.97" ;;
+    esac
+  done < <(grep '^figure ' "$out/few.txt")
 }
 
 lies() {
@@ -68,11 +73,11 @@ lies() {
   grep -o "lie '.*" "$out/lies.log" >"$out/lies.txt" || true
   figure lie.passed "$(grep -c 'cli\.lies .*Passed' "$out/lies.log" || true)" ">=1"
   figure lie.refused_by_name "$(wc -l <"$out/lies.txt")" ">=37"
-  passed lie.no_cure_for_engine unit_dem '*Refuse*' 3
+  passed lie.engine unit_dem '*Refuse*' 3
 }
 
 every_path
-passed rung unit_chain 'PathPrediction.*' 6
+passed rung unit_chain 'PathPrediction.*' 7
 bands
 few_packings
 lies
