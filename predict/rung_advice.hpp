@@ -14,8 +14,9 @@ constexpr auto fields_of(std::type_identity<RungAdvice>) {
 }
 static_assert(tells_every_member<RungAdvice>());
 
-/// memory where shear turns back, or spin turns the state against it, or where at constant volume the sheared pressure differs from that of ISO unloading by
-/// more than 2 %; evolution where the volume changes with or after shear; else reduced.
+/// memory where shear turns back, or spin turns the state against it, or where at constant volume the sheared pressure
+/// differs from that of ISO unloading by more than 2 %; evolution where the volume changes with or after shear; else
+/// reduced.
 RungAdvice rung_needed(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments);
 
 /// The rung whose curve is shown first.

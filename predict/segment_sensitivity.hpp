@@ -2,8 +2,8 @@
 // What the parameters change of a state along a straight segment, S_k = dy/dp_k for each parameter p_k, with
 //   dS_k/de = (df/dy) S_k + df/dp_k = [f(y + h S_k; p_k + h) - f(y - h S_k; p_k - h)]/(2h)
 // f the rate of segment_law.hpp (docs/theory/bands.md, section Slopes). CVODES' own differences step by the square root of
-// its tolerance, at the default one ten times as far: far for a nu_c near jamming. Where the state unjams they
-// end: see RowSlope.
+// its tolerance, at the default one ten times as far: far for a nu_c near jamming. They end
+// where the state unjams: see RowSlope.
 
 #include <cstddef>
 #include <vector>
