@@ -5,7 +5,9 @@
 //   flow    = N - q xi^(n-1) (s - s_r)/Delta,       S = <flow,N>, on co-axial paths 1 - q xi^n
 //   n       = 1 + (m - 1) (1 + <E,N>)^2,            dE = (N - E) de/eps_E, the fading memory of the direction of shear
 //   dP      = B dx + A1 S de + k (1 - h S) (P_t - P) de,   P_t = P_iso + (P_D2 - P_iso) f|f|, f = <F',N>/F_max
-//   dsigma' = a2 B F' dx + DG flow de,              DG = G (nu_P/nu_c - 1)^alpha
+//   dsigma' = a2 B F' dx + DG flow de - B |s - a2 F'| (M - flow_M) <-dx>,   DG = G (nu_P/nu_c - 1)^alpha; M the direction of
+//             s - a2 F', flow_M the flow of shear along it with n = m: by elasticity alone expansion takes s away from a2 F',
+//             beyond any limit as P vanishes, and to that loading a packing yields as to shear
 //   dF'     = lambda (r s - F') de + kappa r d_e s - c_F (F' - kappa r s)/(1 - kappa) <dx>,   r = F_max/s_max, <dx> the compressive part,
 //             d_e s = (d_e sigma' - s d_e P)/P the change of s by shear alone: share kappa of the fabric follows stress at once,
 //             and compression dilutes what does not; c_F is the rate where F' = r s
@@ -132,19 +134,39 @@ Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>
   return elastic - gone * (pow(xi < kMostBeyond ? xi : T(kMostBeyond), (n - 1.0) * near) / D);
 }
 
-/// s_lim at dilatancy chi k (P_t - P)/B [-].
+/// k (P_t - P), how fast P goes to its sheared level where the shear is along N [-].
 template <class T>
-T dilating_limit(const T& s_max, const T& dilatancy) {
+T pressure_relaxation(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y, const Deviator<T>& N) {
+  using std::abs;
+  const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
+  return p.memory.k * (P_t - y.P);
+}
+
+/// s_lim at that relaxation [-].
+template <class T>
+T dilating_limit(const LawModuli<T>& m, const LawParameters<T>& p, const T& relaxation, const T& B) {
   using std::sqrt;
-  const T z = dilatancy / s_max;
-  return s_max * (z + sqrt(1.0 + z * z));
+  const T z = T(p.memory.chi * relaxation / B) / m.s_max;
+  return m.s_max * (z + sqrt(1.0 + z * z));
+}
+
+/// B |s - a2 F'| (M - flow_M): what yields of dsigma' per unit of volumetric expansion.
+template <class T>
+Deviator<T> expansion_yield(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y, const T& B) {
+  using std::sqrt;
+  const Deviator<T> s = y.sigma / y.P, away = s - y.F * p.memory.a2;
+  const T away2 = away.squaredNorm();
+  if (!(away2 > 0.0)) return Deviator<T>::Zero();  // where the slope of sqrt is infinite
+  const T loading = sqrt(away2);
+  const Deviator<T> M = away / loading;
+  const T s_lim = dilating_limit(m, p, pressure_relaxation(m, p, y, M), B);
+  return (M - memory_flow(s, y.s_r, M, s_lim, p.memory.m)) * (B * loading);
 }
 
 /// Right-hand side without corotational terms; `m` by memory_moduli, with limits along `direction`. Finite for P > 0 and nu_P > nu_c.
 template <class T>
 LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y,
                         const LawDirection& direction) {
-  using std::abs;
   using std::pow;
   const Deviator<T> N = direction.N.template cast<T>();
   const T nu_P = pressure_density(m, y.P), B = p.isotropic.B_star(nu_P);
@@ -154,11 +176,10 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   const Deviator<T> s = y.sigma / y.P;
   const T r = m.F_max / m.s_max;
   rate.F = (y.F - s * (p.memory.kappa * r)) * (p.memory.c_F * -std::max(direction.dx, 0.0) / (1.0 - p.memory.kappa));
+  if (direction.dx < 0) rate.sigma -= expansion_yield(m, p, y, B) * T(-direction.dx);
   if (direction.de == 0) return rate;
   rate.E = (N - y.E) * T(direction.de / kStrainMemory);
-  const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
-  const T relaxation = p.memory.k * (P_t - y.P);
-  const T s_lim = dilating_limit(m.s_max, T(p.memory.chi * relaxation / B));
+  const T relaxation = pressure_relaxation(m, p, y, N), s_lim = dilating_limit(m, p, relaxation, B);
   const T remembered = 1.0 + y.E.dot(N);
   const Deviator<T> loading = memory_flow(s, y.s_r, N, s_lim, T(1.0 + (p.memory.m - 1.0) * remembered * remembered));
   const T A1 = (2.0 / 3.0) * (p.memory.a_P * B * y.F.dot(N) - y.sigma.dot(N));

