@@ -54,7 +54,8 @@ class Page:
                 if token.tag == "h2":
                     self.headings.append((token.attrGet("id"), heading))
             elif token.type == "inline":
-                self.sections[-1]["text"] += text_of(token) + " "
+                if tokens[i - 1].type != "heading_open":
+                    self.sections[-1]["text"] += text_of(token) + " "
                 for child in token.children:
                     self.follow(child)
             elif token.type in ("fence", "code_block"):
