@@ -82,16 +82,28 @@ std::vector<TestRecord> described_tests(const Dataset& dataset) {
 fit::Calibration fit_and_save(const Dataset& dataset, const fs::path& folder, const fit::CalibrationOptions& options,
                               const fs::path& output, const Execution& execution) {
   Watch& watch = execution.watch;
-  const auto control = [&](const char* stage) { return watch.control(0, stage, execution.stop); };
-  watch.begin({1}, "");
+  const double packings = static_cast<double>(dataset.seeds.size());
+  // of the time that the parts take together; the other modes are fitted in closed forms alone
+  watch.begin({1, options.profiles ? packings : 0, 0.02}, "");
+  const auto part = [&](std::size_t which, const char* name, const auto& work) {
+    auto result = work(watch.control(which, name, execution.stop));
+    watch.finished(which);
+    return result;
+  };
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
-  fit::Calibration calibration = fit::calibrate(tests, options, control("fit"));
+  fit::Calibration calibration =
+      part(0, "fit", [&](const RunControl& control) { return fit::calibrate(tests, options, control); });
   calibration.law.dataset_digest = dataset.digest;
   rehearse(calibration.law, rehearsals_of(dataset, folder), execution);
-  if (options.profiles) calibration.left_out = fit::leave_one_out(tests, options, control("fit without one packing"));
+  if (options.profiles)
+    calibration.left_out = part(1, "fits without one packing", [&](const RunControl& control) {
+      return fit::leave_one_out(tests, options, control);
+    });
   fit::ModeComparison modes;
-  modes.descriptions = fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c,
-                                     options, control("fit of the other modes"));
+  modes.descriptions = part(2, "fit of the other modes", [&](const RunControl& control) {
+    return fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c, options,
+                         control);
+  });
   modes.verdicts = verdicts_of(calibration.law, modes.descriptions, dataset.seeds.size());
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);

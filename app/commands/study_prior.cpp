@@ -52,9 +52,12 @@ ExitCode study_prior(const PriorOptions& options, Session& session) {
 
 Task declare_study_prior(CLI::App& command) {
   const auto options = std::make_shared<PriorOptions>();
-  command.add_option("MANY", options->many, "folder of a data set or calibration of 16 packings or more")->required();
-  command.add_option("OTHERS", options->others, "likewise, of the same tests on packings of other sizes");
-  command.add_option("-o,--output", options->output, "folder for prior.json")->required();
+  command.add_option("MANY", options->many, "folder of a data set or calibration of 16 packings or more")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("OTHERS", options->others, "likewise, of the same tests on packings of other sizes")
+      ->type_name("DIR");
+  command.add_option("-o,--output", options->output, "folder for prior.json")->required()->type_name("DIR");
   return [options](Session& session) { return study_prior(*options, session); };
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// JSON in and out. Reading is strict and bounded: size, nesting (while parsing), UTF-8, duplicate keys, numbers that no
+// JSON in and out. Comments (// to the end of the line, /* */) are skipped. Besides, reading is strict and bounded: size, nesting (while parsing), UTF-8, duplicate keys, numbers that no
 // double holds, byte order marks and negative zero are refused with file and key in one line. Writing never writes a
 // non-finite number; an undefined quantity (NaN) becomes null.
 
