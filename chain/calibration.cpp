@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "chain/rehearsals.hpp"
+#include "dem/runs/pictures.hpp"
 #include "fit/calibration_file.hpp"
 #include "fit/describe.hpp"
 #include "fit/leave_one_out.hpp"
@@ -151,7 +152,9 @@ fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Exec
 Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const fs::path& output,
                           const Execution& execution, dem::RunCounts& counts) {
   const dem::RunStore store(output, "runs");
-  Dataset dataset = dem::run_planned(plan(spec), Json(dem::spec_to_json(spec)), folder, store, execution, counts);
+  const std::vector<dem::PlannedTest> tests = plan(spec);
+  Dataset dataset = dem::run_planned(tests, Json(dem::spec_to_json(spec)), folder, store, execution, counts);
+  dem::write_pictures(folder, tests, store, execution.threads);
   log_warnings(dataset, execution.watch);
   return dataset;
 }
@@ -168,6 +171,7 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
   if (input.dataset) {
     result.dataset = adopt(*input.dataset, input.dataset_folder, folder);
     adopt_rehearsals(input.dataset_folder, folder);
+    dem::adopt_pictures(input.dataset_folder, folder);
     log_warnings(result.dataset, execution.watch);
   } else {
     result.dataset = simulate_data_set(*input.spec, folder, output, execution, result.counts);
