@@ -29,11 +29,9 @@ struct Series {
   double marker_size = 3;    ///< half of its width [px]
   Line line = Line::none;
   double line_width = 1.8;  ///< [px]
-  /// Name of the toggle that shows and hides it together with others of the figure, e.g. "evolution", "seed 3", "published"; empty:
-  /// always drawn.
+  /// Shows and hides it together with others of the figure, e.g. "evolution", "seed 3"; empty: always shown.
   std::string toggle;
-  bool initially_hidden =
-      false;  ///< drawn, but shown only after its toggle was chosen; alike in all series of a toggle
+  bool initially_hidden = false;  ///< shown once its toggle is chosen; alike in all series of a toggle
 };
 
 struct AxisStyle {
