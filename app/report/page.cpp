@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <kainjow/mustache.hpp>
@@ -106,7 +108,18 @@ std::string figure_data(const Figure& figure) {
   return safe;
 }
 
-std::string html_of(const Paragraph& paragraph) { return "<p>" + to_html(paragraph.text) + "</p>"; }
+std::string html_of(const Paragraph& paragraph) {
+  constexpr std::array classes{"", " class=\"verdict good\"", " class=\"verdict fair\"", " class=\"verdict poor\""};
+  return fmt::format("<p{}>{}</p>", classes[static_cast<std::size_t>(paragraph.tone)], to_html(paragraph.text));
+}
+
+std::string html_of(const Tiles& tiles) {
+  std::string html = "<p class=\"source\">" + to_html(plain(tiles.caption)) + "</p>\n<dl class=\"tiles\">\n";
+  for (const Tile& tile : tiles.tiles)
+    html += fmt::format("<div><dt>{}</dt><dd><b>{}</b> {}</dd></div>\n", to_html(tile.label), to_html(tile.value),
+                        to_html(plain(tile.note)));
+  return html + "</dl>";
+}
 
 std::string html_of(const Warning& warning) {
   std::string html = "<p class=\"warning\">" + to_html(plain(warning.text));
@@ -117,28 +130,71 @@ std::string html_of(const Warning& warning) {
 
 std::string html_of(const Items& items) {
   std::string html = "<ul>\n";
-  for (const std::string& line : items.lines) html += "<li>" + to_html(plain(line)) + "</li>\n";
+  for (std::size_t i = 0; i < items.lines.size(); ++i) {
+    const std::string section = i < items.sections.size() ? items.sections[i] : "";
+    html += "<li>" + to_html(plain(items.lines[i]));
+    if (!section.empty()) html += fmt::format(" <a href=\"#{}\">See there</a>.", section);
+    html += "</li>\n";
+  }
   return html + "</ul>";
 }
 
+constexpr double kBarWidth = 200, kBarHeight = 16;  // [px]
+
+/// Place of `value` in a bar [px]; what lies beyond the range is drawn at its end.
+double bar_place(const Table& table, double value) {
+  return kBarWidth * std::clamp((value - table.bar_from) / (table.bar_to - table.bar_from), 0.0, 1.0);
+}
+
+std::string html_of(const Bar& bar, const Table& table, const std::string& words) {
+  const double middle = kBarHeight / 2;
+  std::string html = fmt::format("<svg class=\"bar\" viewBox=\"-4 0 {} {}\" role=\"img\" aria-label=\"{}\">",
+                                 kBarWidth + 8, kBarHeight, words);
+  if (std::isfinite(bar.reference)) {
+    const double x = bar_place(table, bar.reference);
+    html += fmt::format("<path class=\"k5\" d=\"M{:.1f} 1v{}\" stroke=\"currentColor\" stroke-width=\"3\"/>", x,
+                        kBarHeight - 2);
+  }
+  if (std::isfinite(bar.lower) && std::isfinite(bar.upper))
+    html += fmt::format("<path class=\"k1\" d=\"M{:.1f} {}H{:.1f}\" stroke=\"currentColor\" stroke-width=\"2\"/>",
+                        bar_place(table, bar.lower), middle, bar_place(table, bar.upper));
+  if (std::isfinite(bar.value))
+    html += fmt::format("<circle class=\"k1\" cx=\"{:.1f}\" cy=\"{}\" r=\"3.5\" fill=\"currentColor\"/>",
+                        bar_place(table, bar.value), middle);
+  return html + "</svg>";
+}
+
+/// `classes` of one cell, its number for scripts that sort, and what stands in it.
+std::string html_of(const Cell& cell, const Table& table, bool first, Content content) {
+  std::string words = to_html(cell.text);
+  if (cell.bar) words = html_of(*cell.bar, table, escape_markup(to_plain(cell.text)));
+  if (!cell.link.empty()) words = "<a href=\"#" + cell.link + "\">" + words + "</a>";
+  std::string classes = cell_class(content, character_count(cell.text));
+  if (cell.heat >= 0) classes = fmt::format(" class=\"number heat{}\"", cell.heat);
+  const std::string value = std::isfinite(cell.value) ? fmt::format(" data-value=\"{:.9g}\"", cell.value) : "";
+  return first ? fmt::format("<th scope=\"row\"{}{}>{}</th>", classes, value, words)
+               : fmt::format("<td{}{}>{}</td>", classes, value, words);
+}
+
 std::string html_of(const Table& table) {
-  std::string html = "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" +
-                     to_html(plain(table.caption)) + "\">\n<table>\n<caption>" + to_html(plain(table.caption));
+  std::string html = fmt::format("<div class=\"scroll\"{} role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n",
+                                 table.id.empty() ? "" : " id=\"" + table.id + "\"", to_html(plain(table.caption)));
+  html += "<table>\n<caption>" + to_html(plain(table.caption));
   if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
   html += "</caption>\n<thead><tr>";
   for (const TableColumn& column : table.columns) {
     html += fmt::format("<th scope=\"col\"{}>{}</th>", cell_class(column.content, 0), to_html(column.heading));
   }
   html += "</tr></thead>\n<tbody>\n";
-  for (const auto& row : table.rows) {
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    const auto& row = table.rows[r];
     html += "<tr>";
-    for (std::size_t i = 0; i < row.size() && i < table.columns.size(); ++i) {
-      const char* const tag = i == 0 ? "th" : "td";
-      html +=
-          fmt::format("<{}{}{}>{}</{}>", tag, i == 0 ? " scope=\"row\"" : "",
-                      cell_class(table.columns[i].content, character_count(row[i].text)), to_html(row[i].text), tag);
-    }
+    for (std::size_t i = 0; i < row.size() && i < table.columns.size(); ++i)
+      html += html_of(row[i], table, i == 0, table.columns[i].content);
     html += "</tr>\n";
+    if (r < table.notes.size() && !table.notes[r].empty())
+      html += fmt::format("<tr class=\"note\"><td colspan=\"{}\">{}</td></tr>\n", table.columns.size(),
+                          to_html(plain(table.notes[r])));
   }
   return html + "</tbody>\n</table>\n</div>";
 }
@@ -186,7 +242,7 @@ std::string page_html(const Page& page) {
   }
   data root;
   root.set("title", to_html(plain(page.title)));
-  root.set("style", page_style());
+  root.set("style", page_style() + std::string(block_style()));
   root.set("lead", html_list(page.lead));
   root.set("sections", sections);
   kainjow::mustache::mustache view{kTemplate};
