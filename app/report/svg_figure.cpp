@@ -43,8 +43,8 @@ std::string scale_svg(const Panel& panel, const Frame& frame) {
   }
   if (panel.zero_line && frame.y.from < 0 && frame.y.to > 0)
     ticks += fmt::format("M{} {}H{}", pixels(left), pixels(frame.py(0)), pixels(right));
-  return fmt::format("<g class=\"a\"><path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"{}\"/>\n{}</g>\n", grid, ticks,
-                     numbers);
+  return fmt::format("<g class=\"a\"><path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"{}\"/>\n{}</g>\n", grid,
+                     ticks, numbers);
 }
 
 /// The scale, the frame, title and labels.
@@ -70,8 +70,8 @@ double left_of(const std::vector<Frame>& frames) {
 }
 
 std::string svg_begin(double width, double height, const std::string& attributes) {
-  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\"{}>\n", pixels(width), pixels(height),
-                     attributes);
+  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\"{}>\n", pixels(width),
+                     pixels(height), attributes);
 }
 
 /// `style` with each declaration that reads a variable preceded by one with its
@@ -126,15 +126,15 @@ RenderedFigure render(const Figure& figure) {
     frame.left = left;
     frame.width = rendered.width - left - kRight;
     const std::string clip = fmt::format("{}-clip-{}", figure.id, i);
-    std::string svg = svg_begin(rendered.width, rendered.height,
-                                fmt::format(" class=\"p\" role=\"img\" aria-label=\"{}\"", to_html(plain(panel_name(figure, i)))));
+    std::string svg =
+        svg_begin(rendered.width, rendered.height,
+                  fmt::format(" class=\"p\" role=\"img\" aria-label=\"{}\"", to_html(plain(panel_name(figure, i)))));
     svg += fmt::format("<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n", clip,
                        pixels(frame.left), pixels(frame.top), pixels(frame.width), pixels(frame.height));
     svg += axes_svg(panels[i], frame) + fmt::format("<g clip-path=\"url(#{})\">\n", clip);
     for (const Series& series : panels[i].series) {
       const auto at = std::find(rendered.toggles.begin(), rendered.toggles.end(), series.toggle);
-      const std::string toggle =
-          series.toggle.empty() ? "" : fmt::format("t{}", at - rendered.toggles.begin());
+      const std::string toggle = series.toggle.empty() ? "" : fmt::format("t{}", at - rendered.toggles.begin());
       svg += series_svg(series, toggle, frame, symbols, unseen);
     }
     rendered.panels.push_back(svg + "</g>\n</svg>\n");

@@ -14,13 +14,13 @@ namespace grainlaw::app::report {
 
 /// Panels of one size.
 struct RenderedFigure {
-  std::vector<std::string> panels;    ///< <svg> elements, in the order of the figure
-  std::vector<Frame> frames;          ///< of each
-  double width = 0, height = 0;       ///< of a panel [px]
-  int columns = 1;                    ///< side by side where there is room
-  std::vector<std::string> toggles;   ///< of its series, each once; the i-th hides what is of class "t<i>"
-  int undefined_points = 0;           ///< left out because x or y is not finite (or not positive on a logarithmic axis)
-  int outside_points = 0;             ///< symbols beyond a range that the figure fixes
+  std::vector<std::string> panels;   ///< <svg> elements, in the order of the figure
+  std::vector<Frame> frames;         ///< of each
+  double width = 0, height = 0;      ///< of a panel [px]
+  int columns = 1;                   ///< side by side where there is room
+  std::vector<std::string> toggles;  ///< of its series, each once; the i-th hides what is of class "t<i>"
+  int undefined_points = 0;          ///< left out because x or y is not finite (or not positive on a logarithmic axis)
+  int outside_points = 0;            ///< symbols beyond a range that the figure fixes
 };
 
 RenderedFigure render(const Figure& figure);

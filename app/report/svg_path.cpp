@@ -7,15 +7,15 @@ namespace grainlaw::app::report {
 namespace {
 
 /// `tenths`/10 in the fewest characters: "-.5", "12", "3.1"; set apart from what stands before by its sign or a space.
-void append_tenths(std::string& data, long tenths) {
+void append_tenths(std::string& out, long tenths) {
   if (tenths < 0) {
-    data += '-';
-  } else if (!data.empty() && data.back() != 'm') {
-    data += ' ';
+    out += '-';
+  } else if (!out.empty() && out.back() != 'm') {
+    out += ' ';
   }
   const long size = std::labs(tenths), whole = size / 10, tenth = size % 10;
-  if (whole != 0 || tenth == 0) data += std::to_string(whole);
-  if (tenth != 0) data += {'.', static_cast<char>('0' + tenth)};
+  if (whole != 0 || tenth == 0) out += std::to_string(whole);
+  if (tenth != 0) out += {'.', static_cast<char>('0' + tenth)};
 }
 
 double distance(const std::array<double, 2>& p, const std::array<double, 2>& a, const std::array<double, 2>& b) {
@@ -51,7 +51,8 @@ void SvgPath::close() {
 }
 
 void SvgPath::polyline(const PixelPoints& points) {
-  for (std::size_t i = 0; i < points.size(); ++i) i == 0 ? move(points[i][0], points[i][1]) : line(points[i][0], points[i][1]);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    i == 0 ? move(points[i][0], points[i][1]) : line(points[i][0], points[i][1]);
 }
 
 PixelPoints simplified(const PixelPoints& points, double tolerance) {

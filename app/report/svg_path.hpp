@@ -23,7 +23,7 @@ class SvgPath {
   void to(double x, double y);
 
   std::string data_;
-  long x_ = 0, y_ = 0;            ///< where the pen is [0.1 px]
+  long x_ = 0, y_ = 0;              ///< where the pen is [0.1 px]
   long start_x_ = 0, start_y_ = 0;  ///< of the piece
 };
 

@@ -27,7 +27,8 @@ std::string star_path(double radius) {
   SvgPath path;
   for (int k = 0; k < 10; ++k) {
     const double r = k % 2 == 0 ? radius : inner, angle = 0.2 * std::numbers::pi * k;
-    k == 0 ? path.move(r * std::sin(angle), -r * std::cos(angle)) : path.line(r * std::sin(angle), -r * std::cos(angle));
+    k == 0 ? path.move(r * std::sin(angle), -r * std::cos(angle))
+           : path.line(r * std::sin(angle), -r * std::cos(angle));
   }
   path.close();
   return path.data();
@@ -93,7 +94,7 @@ std::string markers_svg(const Series& series, const PixelPoints& points, Symbols
   SvgPath path;
   path.polyline(apart);
   if (apart.size() == 1) path.line(apart[0][0], apart[0][1]);  // a mere point has no corner
-  return fmt::format(R"(<path class="m" style="marker:url(#{})" d="{}"/>)", symbols.id_of(series), path.data());
+  return fmt::format(R"svg(<path class="m" style="marker:url(#{})" d="{}"/>)svg", symbols.id_of(series), path.data());
 }
 
 std::string error_bars_svg(const Series& series, const Frame& frame) {
@@ -161,7 +162,8 @@ double Frame::px(double value) const { return left + near(x.fraction(value)) * w
 double Frame::py(double value) const { return top + (1 - near(y.fraction(value))) * height; }
 
 std::string Symbols::id_of(const Series& series) {
-  const std::string symbol = fmt::format(R"(class="{}">{})", colour_class(series.colour), symbol_svg(series, series.marker_size));
+  const std::string symbol =
+      fmt::format(R"(class="{}">{})", colour_class(series.colour), symbol_svg(series, series.marker_size));
   auto at = std::find(symbols_.begin(), symbols_.end(), symbol);
   if (at == symbols_.end()) at = symbols_.insert(at, symbol);
   return fmt::format("{}-m{}", figure_, at - symbols_.begin());
@@ -203,11 +205,12 @@ std::string series_svg(const Series& series, const std::string& toggle, const Fr
 }
 
 std::string legend_key(const Series& series, double x, double y) {
-  std::string out = fmt::format(R"(<g class="{}" transform="translate({} {})">)", colour_class(series.colour),
+  std::string out = fmt::format(R"svg(<g class="{}" transform="translate({} {})">)svg", colour_class(series.colour),
                                 pixels(x), pixels(y));
   if (series.line != Line::none) out += fmt::format(R"(<path {} d="M0 0h24"/>)", line_style(series));
   if (series.marker != Marker::none)
-    out += fmt::format(R"(<g transform="translate(12 0)">{}</g>)", symbol_svg(series, std::max(3.0, series.marker_size)));
+    out += fmt::format(R"svg(<g transform="translate(12 0)">{}</g>)svg",
+                       symbol_svg(series, std::max(3.0, series.marker_size)));
   return out + "</g>";
 }
 
