@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "chain/fitted_paths.hpp"
 #include "chain/rehearsals.hpp"
 #include "dem/runs/pictures.hpp"
 #include "fit/calibration_file.hpp"
@@ -27,7 +28,7 @@ namespace fs = std::filesystem;
 void remove_results_of_others(const fs::path& output, const std::string& spec) {
   std::ifstream file(output / "spec.resolved.json", std::ios::binary);
   if (std::string{std::istreambuf_iterator<char>(file), {}} == spec) return;
-  for (const char* name : {"parameters.json", "calibration.json"}) fs::remove(output / name);
+  for (const char* name : {"parameters.json", "calibration.json", "fitted_paths.json"}) fs::remove(output / name);
 }
 
 /// Refuses before anything runs what no fit can be made of.
@@ -111,6 +112,7 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fs::path& folder, co
   modes.claims = claims_of(shown, calibration.law, modes.descriptions, options.steady_from);
   watch.end();
   const OrderedJson origin = provenance(execution);
+  write_fitted_paths(output / "fitted_paths.json", fitted_paths(calibration.law, shown, execution), origin);
   write_calibration(output / "calibration.json", calibration, options, modes, origin);
   write_parameters(output / "parameters.json", {calibration.law, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {

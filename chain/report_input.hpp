@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "chain/fitted_paths.hpp"
+#include "chain/studies/settings_study.hpp"
 #include "fit/calibrate.hpp"
 #include "fit/published/verdicts.hpp"
 #include "model/vocabulary/test_record.hpp"
@@ -25,13 +27,19 @@ struct ReportInput {
   fit::Calibration calibration;
   fit::ModeComparison modes;                           ///< beside what was published
   std::vector<predict::PredictionFolder> predictions;  ///< by name
-  std::vector<Fact> provenance;                        ///< commands, versions, seconds
-  std::vector<Fact> spec;                              ///< of the data set, resolved; empty when unknown
-  std::vector<std::string> warnings;                   ///< files that do not belong together
-  std::vector<std::string> run_warnings;               ///< "test: warning" of the DEM runs
+  std::string no_predictions;            ///< why there are none, or the command that makes them; else empty
+  std::vector<FittedPath> fitted_paths;  ///< the law along the shear tests
+  std::vector<std::pair<std::string, SettingsStudy>>
+      studies;                            ///< of studies/NAME/study.json that compare settings, by name
+  std::string calibrate_command;          ///< that makes the folder's files anew from its data set
+  std::vector<Fact> provenance;           ///< commands, versions, seconds
+  std::vector<Fact> spec;                 ///< of the data set, resolved; empty when unknown
+  std::vector<std::string> warnings;      ///< files that do not belong together
+  std::vector<std::string> run_warnings;  ///< "test: warning" of the DEM runs
 };
 
-/// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it.
+/// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it; predictions
+/// may be missing, and what earlier programs did not write.
 ReportInput read_report_input(const std::filesystem::path& dir);
 
 /// parameters.json alone, as far as the table of parameters goes. Throws likewise.

@@ -10,8 +10,21 @@
 
 namespace grainlaw::app::report {
 
+enum class Tone { plain, good, fair, poor };
+
 struct Paragraph {
   Text text;
+  Tone tone = Tone::plain;  ///< others are set apart, in a colour
+};
+
+/// The few numbers that are read first, side by side.
+struct Tile {
+  Text label, value;
+  std::string note;  ///< small, beneath
+};
+struct Tiles {
+  std::string caption;  ///< what they are, for all
+  std::vector<Tile> tiles;
 };
 
 /// Set apart from the text; may end with a link to a section of the page.
@@ -23,9 +36,10 @@ struct Warning {
 
 struct Items {
   std::vector<std::string> lines;
+  std::vector<std::string> sections = {};  ///< of each line the id that it links to, empty: none; may be none at all
 };
 
-using BlockContent = std::variant<Paragraph, Warning, Items, Table, Figure>;
+using BlockContent = std::variant<Paragraph, Tiles, Warning, Items, Table, Figure>;
 
 /// What stands together; with a summary it is folded under these words.
 struct Block {
@@ -48,7 +62,8 @@ struct Page {
 /// A figure comes with caption, sources, count of points not drawn, and its numbers as JSON for scripts to come.
 std::string page_html(const Page& page);
 
-/// The style sheet: light, dark and print.
+/// The style sheet: light, dark and print; and that of tiles, heat maps and bars, which no figure needs.
 const char* page_style();
+const char* block_style();
 
 }  // namespace grainlaw::app::report

@@ -79,16 +79,57 @@ Table parameter_comparison(const CalibratedLaw& law) {
   const auto difference = [](const Parameter& p) {
     return percent_difference(p.is_known() ? p.estimate.value : kUndefined, p.published());
   };
-  return table_of("Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)", "parameters.json",
-                  parameters_of(law),
-                  {{"parameter", words, [](auto& p) { return p.info.name; }},
-                   {"symbol", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
-                   {"Eq.", symbol, [](auto& p) { return equation_text(p.info.equation); }},
-                   {"ours ± standard error", number, estimate_cell},
-                   {"95 % interval", number, interval_of},
-                   {"published", number, [](auto& p) { return digits(p.published(), 5); }},
-                   {"difference", number, difference},
-                   {"note", words, [](auto& p) { return p.estimate.note; }}});
+  Table table = table_of("Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)",
+                         "parameters.json", parameters_of(law),
+                         {{"parameter", words, [](auto& p) { return p.info.name; }},
+                          {"symbol", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
+                          {"Eq.", symbol, [](auto& p) { return equation_text(p.info.equation); }},
+                          {"ours ± standard error", number, estimate_cell},
+                          {"95 % interval", number, interval_of},
+                          {"published", number, [](auto& p) { return digits(p.published(), 5); }},
+                          {"difference", number, difference}});
+  for (const Parameter& p : parameters_of(law)) table.notes.push_back(p.estimate.note);
+  return table;
+}
+
+Table forest(const CalibratedLaw& law, Forest which) {
+  const auto scale = [=](const Parameter& p) {
+    return which == Forest::own ? std::abs(p.estimate.value) : std::abs(p.published());
+  };
+  const auto is_density = [](const Parameter& p) { return std::string_view(p.info.name).ends_with("nu_c"); };
+  std::vector<Parameter> shown;
+  for (const Parameter& p : parameters_of(law)) {
+    if (!p.is_known()) continue;
+    const bool published = std::isfinite(p.published()) && p.published() != 0;
+    const Forest its = is_density(p) ? Forest::densities : published ? Forest::ratios : Forest::own;
+    if (its == which && (its == Forest::densities || scale(p) > 0)) shown.push_back(p);
+  }
+  const auto bar = [=](const Parameter& p) {
+    const double unit = which == Forest::densities ? 1 : scale(p), half = p.estimate.half_width();
+    Bar drawn{(p.estimate.value - half) / unit, p.estimate.value / unit, (p.estimate.value + half) / unit,
+              which == Forest::own ? kUndefined : p.published() / unit};
+    Cell cell(fmt::format("ours {}, published {}", significant(p.estimate.value), significant(p.published())),
+              drawn.value);
+    cell.bar = drawn;
+    return cell;
+  };
+  std::vector<ColumnOf<Parameter>> columns{{"", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
+                                           {"parameter", words, [](auto& p) { return p.info.name; }},
+                                           {which == Forest::densities ? "{ν} = .63 … .69"
+                                            : which == Forest::ratios  ? "over published: 0 … 2"
+                                                                       : "over its own value: 0 … 2",
+                                            symbol, bar},
+                                           {"ours ± standard error", number, estimate_cell}};
+  if (which != Forest::own) columns.push_back({"published", number, [](auto& p) { return digits(p.published(), 5); }});
+  Table table =
+      table_of(which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
+               : which == Forest::ratios  ? "Parameters over the published value: ours with 95 % interval (dot), "
+                                            "published (bar, at 1)"
+                                          : "Parameters that nobody published, over their own value",
+               "parameters.json", shown, columns);
+  table.bar_from = which == Forest::densities ? 0.63 : 0;
+  table.bar_to = which == Forest::densities ? 0.69 : 2;
+  return table;
 }
 
 Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
