@@ -103,6 +103,7 @@ ReportInput read_report_input(const fs::path& dir) {
   add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.law.dataset_digest,
               input);
   add_facts(parameters.provenance, "", "parameters.json", input.provenance);
+  input.pictures = with_remedy(calibrate, [&] { return dem::read_pictures(dir / "dataset"); });
   input.calibrate_command =
       fmt::format("grainlaw calibrate --dataset {} -o {}", (dir / "dataset").string(), dir.string());
   input.fitted_paths =

@@ -8,6 +8,7 @@
 
 #include "chain/fitted_paths.hpp"
 #include "chain/studies/settings_study.hpp"
+#include "dem/runs/pictures.hpp"
 #include "fit/calibrate.hpp"
 #include "fit/published/verdicts.hpp"
 #include "model/vocabulary/test_record.hpp"
@@ -32,6 +33,7 @@ struct ReportInput {
   std::vector<std::pair<std::string, SettingsStudy>>
       studies;                            ///< of studies/NAME/study.json that compare settings, by name
   std::string calibrate_command;          ///< that makes the folder's files anew from its data set
+  std::optional<dem::ShearPictures> pictures;  ///< of one packing; older data sets have none
   std::vector<Fact> provenance;           ///< commands, versions, seconds
   std::vector<Fact> spec;                 ///< of the data set, resolved; empty when unknown
   std::vector<std::string> warnings;      ///< files that do not belong together

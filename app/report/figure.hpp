@@ -62,4 +62,12 @@ struct Figure {
   bool shared_axes = false;   ///< same ranges in all panels, numbers on the outer ones only
 };
 
+/// A picture that is no plot: ready panels, two in a row, without numbers to point at.
+struct Drawing {
+  std::string id, title, description;  ///< as of a figure
+  Text caption;
+  std::vector<std::string> sources;
+  std::vector<std::string> panels;  ///< <svg class="p"> each
+};
+
 }  // namespace grainlaw::app::report

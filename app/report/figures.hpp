@@ -38,4 +38,7 @@ Figure preparation_quality_figure(const chain::ReportInput& input);
 /// The same over the course of the element tests.
 Figure shear_quality_figure(const chain::ReportInput& input);
 
+/// A packing before and after shear, and the directions of its contacts and forces.
+Drawing packing_drawing(const dem::ShearPictures& pictures);
+
 }  // namespace grainlaw::app::report

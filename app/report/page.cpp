@@ -170,6 +170,7 @@ std::string html_of(const Table& table) {
 }
 
 std::string html_of(const Figure& figure) { return figure_html(figure); }
+std::string html_of(const Drawing& drawing) { return drawing_html(drawing); }
 
 std::string html_of(const Block& block) {
   std::string html;

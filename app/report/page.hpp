@@ -39,7 +39,7 @@ struct Items {
   std::vector<std::string> sections = {};  ///< of each line the id that it links to, empty: none; may be none at all
 };
 
-using BlockContent = std::variant<Paragraph, Tiles, Warning, Items, Table, Figure>;
+using BlockContent = std::variant<Paragraph, Tiles, Warning, Items, Table, Figure, Drawing>;
 
 /// What stands together; with a summary it is folded under these words.
 struct Block {

@@ -127,6 +127,14 @@ std::string said_of_points(int count, const char* what) {
   return count == 0 ? "" : fmt::format(" {} {}.", count, what);
 }
 
+/// Open for what it is drawn from.
+std::string caption_html(const std::string& id, const std::string& title, const Text& caption) {
+  return fmt::format(
+      "<figcaption><a class=\"anchor\" href=\"#{}\" aria-label=\"Link to this figure\">#</a> <b>{}.</b> {} <span "
+      "class=\"source\">",
+      id, to_html(plain(title)), to_html(caption));
+}
+
 }  // namespace
 
 char base64_character(unsigned six_bits) {
@@ -170,15 +178,21 @@ std::string figure_html(const Figure& figure) {
       fmt::format("<figure id=\"{}\">\n<p class=\"unseen\">{}</p>\n", figure.id, to_html(plain(figure.description)));
   html += legend_html(figure, rendered) + fmt::format("<div class=\"panels columns{}\">\n", rendered.columns);
   for (const std::string& panel : rendered.panels) html += panel;
-  html += fmt::format(
-      "</div>\n<figcaption><a class=\"anchor\" href=\"#{}\" aria-label=\"Link to this figure\">#</a> <b>{}.</b> {}",
-      figure.id, to_html(plain(figure.title)), to_html(figure.caption));
-  html += " <span class=\"source\">" + said_of_points(rendered.undefined_points, "undefined points are not drawn") +
+  html += "</div>\n" + caption_html(figure.id, figure.title, figure.caption);
+  html += said_of_points(rendered.undefined_points, "undefined points are not drawn") +
           said_of_points(rendered.outside_points, "points lie outside the axes") + " Drawn from " +
           code_list(figure.sources) +
           (figure.command.empty() ? "" : ", made by <code>" + to_html(plain(figure.command)) + "</code>") +
           ".</span></figcaption>\n";
   return html + fmt::format("<script type=\"application/json\">{}</script>\n</figure>", figure_data(figure, rendered));
+}
+
+std::string drawing_html(const Drawing& drawing) {
+  std::string html = fmt::format("<figure id=\"{}\">\n<p class=\"unseen\">{}</p>\n<div class=\"panels columns2\">\n",
+                                 drawing.id, to_html(plain(drawing.description)));
+  for (const std::string& panel : drawing.panels) html += panel;
+  return html + "</div>\n" + caption_html(drawing.id, drawing.title, drawing.caption) + "Drawn from " +
+         code_list(drawing.sources) + ".</span></figcaption>\n</figure>";
 }
 
 }  // namespace grainlaw::app::report

@@ -9,6 +9,7 @@
 namespace grainlaw::app::report {
 
 std::string figure_html(const Figure& figure);
+std::string drawing_html(const Drawing& drawing);
 
 /// The base-64 character of six bits.
 char base64_character(unsigned six_bits);

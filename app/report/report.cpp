@@ -147,6 +147,7 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   page.sections.push_back(parameters(calibration.law));
   add("shear", "The law over the shear tests",
       {open(sheared_pressure_figure(input)), open(stress_ratio_figure(input)), open(fabric_figure(input))});
+  if (input.pictures) page.sections.back().blocks.push_back(open(packing_drawing(*input.pictures)));
   add("laws", "Shear parameters over density", {open(shear_law_figure(input))});
   add("state", "Pressure, coordination and rattlers",
       {open(density_figure(input)), open(scaled_density_figure(input)), open(modes_figure(input))});

@@ -48,8 +48,12 @@ OrderedJson rounded(const Rows& rows) {
 }
 
 OrderedJson to_json(const PackingPicture& picture) {
-  return {{"width", picture.width},   {"height", picture.height}, {"circles", rounded(picture.circles)},
-          {"chains", rounded(picture.chains)}, {"count", picture.count},   {"force", picture.force}};
+  return {{"width", picture.width},
+          {"height", picture.height},
+          {"circles", rounded(picture.circles)},
+          {"chains", rounded(picture.chains)},
+          {"count", picture.count},
+          {"force", picture.force}};
 }
 
 PackingPicture from_json(const Json& json) {
@@ -65,12 +69,11 @@ PackingPicture from_json(const Json& json) {
 
 }  // namespace
 
-void write_pictures(const fs::path& folder, const std::vector<PlannedTest>& tests, const RunStore& store,
-                    int threads) {
+void write_pictures(const fs::path& folder, const std::vector<PlannedTest>& tests, const RunStore& store, int threads) {
   const PlannedTest* const test = shown_test(tests);
-  const fs::path before = test ? store.folder(preparation_key(test->preparation)) /
-                                     kept_file(test->path.branch, test->path.nu)
-                               : fs::path();
+  const fs::path before =
+      test ? store.folder(preparation_key(test->preparation)) / kept_file(test->path.branch, test->path.nu)
+           : fs::path();
   const fs::path after = test ? store.folder(test_key(*test)) / "end.state" : fs::path();
   if (!test || !fs::exists(before) || !fs::exists(after)) {
     fs::remove(folder / kPicturesFile);
@@ -117,7 +120,7 @@ std::optional<ShearPictures> read_pictures(const fs::path& folder) {
     pictures.after = from_json(json.at("after"));
     return pictures;
   } catch (const Json::exception& error) {
-    throw InvalidInput(fmt::format("{}: {}; it is made again by calibrate", file.string(), error.what()));
+    throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
   }
 }
 

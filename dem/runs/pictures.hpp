@@ -16,10 +16,10 @@ namespace grainlaw::dem {
 inline constexpr const char* kPicturesFile = "pictures.json";
 
 struct ShearPictures {
-  std::string test;                 ///< name of its record
-  double nu = 0, strain = 0;        ///< where it starts; eps_dev of its path
+  std::string test;           ///< name of its record
+  double nu = 0, strain = 0;  ///< where it starts; eps_dev of its path
   std::int64_t particles = 0;
-  std::string horizontal, vertical; ///< axes "x", "y", "z": of the fastest extension and compression
+  std::string horizontal, vertical;  ///< axes "x", "y", "z": of the fastest extension and compression
   PackingPicture before, after;
 };
 

@@ -16,8 +16,9 @@ namespace grainlaw::dem {
 struct PackingPicture {
   double width = 0, height = 0;                ///< of what is shown: the cell, or its part up to kPictureSize
   std::vector<std::array<double, 3>> circles;  ///< horizontal, vertical, radius of the cut, images included
-  std::vector<std::array<double, 5>> chains;   ///< of contacts within ⟨r⟩/2 of the plane: both centres, force over the mean
-  std::vector<double> count, force;            ///< roses over 180 degrees, kRoseBins each
+  std::vector<std::array<double, 5>>
+      chains;                        ///< of contacts within ⟨r⟩/2 of the plane: both centres, force over the mean
+  std::vector<double> count, force;  ///< roses over 180 degrees, kRoseBins each
 };
 
 inline constexpr double kPictureSize = 40;

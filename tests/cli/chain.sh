@@ -19,6 +19,13 @@ grep -q $'\x1b' log && fail "escape sequences in a log"
 head -1 out/dataset/D2-0.70-s1.csv | grep -q '^time\[s\],segment,strain_xx,' || fail "header"
 grep -Eiq '(nan|inf)(,|$)' out/dataset/*.csv && fail "a non-finite number in a series"
 
+# the packing of the middle density: sheared along the first axis and the last, contacts and forces follow
+jq -e '.test == "D2-0.74-s1" and .horizontal == "x" and .vertical == "z" and (.before.circles | length) > 20 and (.after.chains | length) > 20
+  and ([.before, .after | .count | length] == [18, 18]) and .after.width > .before.width * 1.1
+  and ((.after.force | (.[8] + .[9]) / (.[0] + .[17])) > 1.2 * (.before.force | (.[8] + .[9]) / (.[0] + .[17])))' \
+  out/dataset/pictures.json >/dev/null || fail "pictures.json: $(head -c 300 out/dataset/pictures.json)"
+cp out/dataset/pictures.json pictures.json
+
 # finished runs are found, one thread gives the same bits, and the resolved spec is a spec
 "$grainlaw" calibrate out/spec.resolved.json -o out --threads 1 --json >second.json 2>log
 grep -q '"runs_found": 16' second.json || fail "runs were repeated: $(cat second.json)"
@@ -33,6 +40,8 @@ before=$(digest out)
 values() { sed '/"provenance"/,$d' "$1"; }
 diff <(values out/parameters.json) <(values refit/parameters.json) || fail "refit differs"
 [[ ! -e refit/runs ]] || fail "refit ran DEM"
+cmp pictures.json out/dataset/pictures.json && cmp pictures.json single/dataset/pictures.json && cmp pictures.json refit/dataset/pictures.json ||
+  fail "pictures differ: on one thread, from the store, or from the data set"
 "$grainlaw" calibrate --dataset out -o refit --coupling single --starts 2 --quiet >/dev/null || [[ $? == 3 ]]
 grep -q '"coupling": "single"' refit/parameters.json && grep -q '"tried": 2' refit/calibration.json || fail "coupling, starts"
 "$grainlaw" calibrate --dataset out -o refit --loss huber --quiet >/dev/null || [[ $? == 3 ]]
