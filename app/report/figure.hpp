@@ -55,9 +55,10 @@ struct Figure {
   std::string description;                ///< what a reader sees, for screen readers
   Text caption = {};                      ///< below the figure
   std::vector<std::string> sources = {};  ///< files that it was drawn from, relative to the report's directory
+  std::string command = {};               ///< that made these files; empty: unknown
   std::vector<Panel> panels = {};
   int columns = 1;
-  double panel_height = 250;  ///< [px] of a figure 960 px wide
+  double panel_height = 250;  ///< [px] of a figure 1000 px wide
   bool shared_axes = false;   ///< same ranges in all panels, numbers on the outer ones only
 };
 

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <kainjow/mustache.hpp>
-#include <nlohmann/json.hpp>
+#include <page_script_text.hpp>
+#include <set>
 
-#include "app/report/svg_figure.hpp"
+#include "app/report/page_figure.hpp"
+#include "model/files/digest.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -19,7 +20,7 @@ constexpr const char* kTemplate = R"(<!DOCTYPE html>
 <head>
 <meta charset="utf-8"/>
 <meta name="viewport" content="width=device-width, initial-scale=1"/>
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'"/>
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{{{script_digest}}}'"/>
 <title>{{{title}}}</title>
 <style>
 {{{style}}}</style>
@@ -41,13 +42,14 @@ constexpr const char* kTemplate = R"(<!DOCTYPE html>
 <main>
 {{#sections}}
 <section id="{{id}}" aria-labelledby="{{id}}-heading">
-<h2 id="{{id}}-heading">{{{heading}}}</h2>
+<h2 id="{{id}}-heading">{{{heading}}} <a class="anchor" href="#{{id}}" aria-label="Link to this section">#</a></h2>
 {{#blocks}}
 {{{html}}}
 {{/blocks}}
 </section>
 {{/sections}}
 </main>
+<script>{{{script}}}</script>
 </body>
 </html>
 )";
@@ -67,45 +69,6 @@ std::string file_list(const std::vector<std::string>& files) {
 const char* cell_class(Content content, std::size_t characters) {
   if (content == Content::words) return characters > 30 ? " class=\"long\"" : "";
   return content == Content::symbol ? " class=\"symbol\"" : " class=\"number\"";
-}
-
-/// JSON has no NaN: what is undefined becomes null.
-nlohmann::json number_list(const std::vector<double>& values) {
-  auto list = nlohmann::json::array();
-  for (const double value : values) {
-    if (!std::isfinite(value)) {
-      list.push_back(nullptr);
-      continue;
-    }
-    // Six digits are more than a figure shows; the files have them all.
-    const std::string digits = fmt::format("{:.6g}", value);
-    double rounded = value;
-    std::from_chars(digits.data(), digits.data() + digits.size(), rounded);
-    list.push_back(rounded);
-  }
-  return list;
-}
-
-/// The figure's numbers, safe inside a <script> element: no '<', no line separator of JavaScript.
-std::string figure_data(const Figure& figure) {
-  nlohmann::ordered_json document;
-  document["figure"] = figure.id;
-  document["panels"] = nlohmann::json::array();
-  for (const Panel& panel : figure.panels) {
-    nlohmann::ordered_json entry{{"title", to_plain(panel.title)},
-                                 {"x", to_plain(panel.x.label)},
-                                 {"y", to_plain(panel.y.label)},
-                                 {"series", nlohmann::json::array()}};
-    for (const Series& series : panel.series) {
-      entry["series"].push_back(
-          {{"label", to_plain(series.label)}, {"x", number_list(series.x)}, {"y", number_list(series.y)}});
-    }
-    document["panels"].push_back(entry);
-  }
-  std::string safe;
-  for (const char c : document.dump(-1, ' ', /*ensure_ascii=*/true))
-    safe += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", static_cast<int>(c)) : std::string(1, c);
-  return safe;
 }
 
 std::string html_of(const Paragraph& paragraph) {
@@ -175,10 +138,17 @@ std::string html_of(const Cell& cell, const Table& table, bool first, Content co
                : fmt::format("<td{}{}>{}</td>", classes, value, words);
 }
 
+/// Name of a class of tables with the same headings.
+std::string class_of(const Table& table) {
+  std::string headings;
+  for (const TableColumn& column : table.columns) headings += to_plain(column.heading) + "|";
+  return "h" + sha256(headings).substr(0, 8);
+}
+
 std::string html_of(const Table& table) {
   std::string html = fmt::format("<div class=\"scroll\"{} role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n",
                                  table.id.empty() ? "" : " id=\"" + table.id + "\"", to_html(plain(table.caption)));
-  html += "<table>\n<caption>" + to_html(plain(table.caption));
+  html += "<table class=\"" + class_of(table) + "\">\n<caption>" + to_html(plain(table.caption));
   if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
   html += "</caption>\n<thead><tr>";
   for (const TableColumn& column : table.columns) {
@@ -198,21 +168,7 @@ std::string html_of(const Table& table) {
   return html + "</tbody>\n</table>\n</div>";
 }
 
-std::string html_of(const Figure& figure) {
-  const RenderedFigure rendered = render_svg(figure);
-  std::string html = fmt::format("<figure id=\"{}\">\n<div class=\"scroll\">{}</div>\n<figcaption><b>{}.</b> {}",
-                                 figure.id, rendered.svg, to_html(plain(figure.title)), to_html(figure.caption));
-  if (rendered.undefined_points > 0) {
-    html += fmt::format(" <span class=\"source\">{} undefined points are not drawn.</span>", rendered.undefined_points);
-  }
-  if (rendered.outside_points > 0) {
-    html += fmt::format(" <span class=\"source\">{} points lie outside the axes.</span>", rendered.outside_points);
-  }
-  html += " <span class=\"source\">Drawn from " + file_list(figure.sources) + ".</span></figcaption>\n";
-  html += fmt::format("<script type=\"application/json\" id=\"{}-data\">{}</script>\n</figure>", figure.id,
-                      figure_data(figure));
-  return html;
-}
+std::string html_of(const Figure& figure) { return figure_html(figure); }
 
 std::string html_of(const Block& block) {
   std::string html;
@@ -228,6 +184,62 @@ data html_list(const std::vector<Block>& blocks) {
   return list;
 }
 
+/// `visit` each T of the page.
+template <class T, class Visit>
+void each_of(const Page& page, const Visit& visit) {
+  const auto in_blocks = [&](const std::vector<Block>& blocks) {
+    for (const Block& block : blocks) {
+      for (const BlockContent& content : block.contents) {
+        if (const T* const found = std::get_if<T>(&content)) visit(*found);
+      }
+    }
+  };
+  in_blocks(page.lead);
+  for (const Section& section : page.sections) in_blocks(section.blocks);
+}
+
+std::size_t most_toggles(const Page& page) {
+  std::size_t most = 0;
+  each_of<Figure>(page, [&](const Figure& figure) {
+    std::set<std::string> toggles;
+    for (const Panel& panel : figure.panels) {
+      for (const Series& series : panel.series) toggles.insert(series.toggle);
+    }
+    most = std::max(most, toggles.size());
+  });
+  return most;
+}
+
+/// On a narrow screen each row of a table is a card, in which the headings stand before their cells: rules that say them.
+std::string card_style(const Page& page) {
+  std::set<std::string> done;
+  std::string style = "@media (max-width: 44rem) {\n";
+  each_of<Table>(page, [&](const Table& table) {
+    if (!done.insert(class_of(table)).second) return;
+    for (std::size_t i = 1; i < table.columns.size(); ++i) {
+      std::string heading;
+      for (const char c : to_plain(table.columns[i].heading))
+        heading += c == '"' || c == '\\' || c == '<' ? fmt::format("\\{:x} ", static_cast<int>(c)) : std::string(1, c);
+      style += fmt::format(".{} td:nth-child({})::before {{ content: \"{}\"; }}\n", class_of(table), i + 1, heading);
+    }
+  });
+  return style + "}\n";
+}
+
+/// Of 32 bytes: 43 characters and one that fills up.
+std::string base64(const std::string& bytes) {
+  std::string text;
+  unsigned held = 0;
+  int bits = 0;
+  for (const char byte : bytes) {
+    held = held << 8 | static_cast<unsigned char>(byte);
+    for (bits += 8; bits >= 6; bits -= 6) text += base64_character(held >> (bits - 6));
+  }
+  if (bits > 0) text += base64_character(held << (6 - bits));
+  while (text.size() % 4 != 0) text += '=';
+  return text;
+}
+
 }  // namespace
 
 std::string page_html(const Page& page) {
@@ -241,7 +253,9 @@ std::string page_html(const Page& page) {
   }
   data root;
   root.set("title", to_html(plain(page.title)));
-  root.set("style", page_style() + std::string(block_style()));
+  root.set("style", page_style() + std::string(block_style()) + toggle_style(most_toggles(page)) + card_style(page));
+  root.set("script", std::string(kPageScript));
+  root.set("script_digest", base64(sha256_bytes(kPageScript)));
   root.set("lead", html_list(page.lead));
   root.set("sections", sections);
   kainjow::mustache::mustache view{kTemplate};
