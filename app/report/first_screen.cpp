@@ -72,15 +72,6 @@ std::string list_of(const std::vector<std::string>& words) {
   return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
 }
 
-/// Value of the provenance's `what` as `file` says it; empty without.
-std::string fact_of(const ReportInput& input, const std::string& what, const std::string& file) {
-  for (const chain::Fact& fact : input.provenance) {
-    if (fact.what == what && std::find(fact.files.begin(), fact.files.end(), file) != fact.files.end())
-      return fact.value;
-  }
-  return "";
-}
-
 Paragraph subject(const ReportInput& input) {
   std::set<std::int64_t> particles;
   std::size_t fitted = 0;
@@ -230,7 +221,7 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
   }
   if (!untried.empty() && !errors.empty())
     all.push_back(
-        {45, fmt::format("Never tried: {} paths. Nothing here speaks for them.", list_of(untried)), "unseen"});
+        {45, fmt::format("Never tried: {} paths. Nothing here speaks for them.", list_of(untried)), "predictions"});
   for (const predict::PredictionFolder& prediction : input.predictions) {
     for (const std::string& warning : prediction.warnings)
       all.push_back({36, prediction.name + ": " + warning + ".", "warnings"});

@@ -102,6 +102,21 @@ TEST_F(ReportFolder, OnePageWithEveryFigureAndNothingFromOutside) {
   EXPECT_EQ(count(html, "http"), count(html, "http://www.w3.org/2000/svg") + count(html, "http-equiv"));
 }
 
+TEST_F(ReportFolder, EveryLinkLeadsSomewhere) {
+  const auto check = [](const std::string& html) {
+    int links = 0;
+    for (std::size_t at = html.find("href=\"#"); at != std::string::npos; at = html.find("href=\"#", at + 1)) {
+      const std::string id = html.substr(at + 7, html.find('"', at + 7) - at - 7);
+      EXPECT_NE(html.find("id=\"" + id + "\""), std::string::npos) << id;
+      ++links;
+    }
+    EXPECT_GT(links, 10);
+  };
+  check(page());
+  fs::remove_all(dir_ / "predictions");
+  check(page());
+}
+
 /// How often `word` stands by itself, not inside a longer word.
 int count_words(const std::string& text, const std::string& word) {
   const auto letter = [&](std::size_t i) {
