@@ -148,6 +148,13 @@ std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction)
   return records;
 }
 
+std::string fact_of(const ReportInput& input, const std::string& what, const std::string& file) {
+  for (const Fact& fact : input.provenance) {
+    if (fact.what == what && std::ranges::find(fact.files, file) != fact.files.end()) return fact.value;
+  }
+  return "";
+}
+
 std::vector<Misfit> coupled_misfits(const ReportInput& input) {
   std::vector<Misfit> misfits;
   for (const fit::Stage& stage : input.calibration.stages) {

@@ -50,6 +50,9 @@ CalibratedLaw read_fitted_parameters(const std::filesystem::path& dir);
 /// The DEM runs of a prediction; empty when it was made without --dem.
 std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction);
 
+/// Value of the provenance's line `what` as `file` says it; empty without.
+std::string fact_of(const ReportInput& input, const std::string& what, const std::string& file);
+
 /// A residual of the coupled fit and the test that it is of.
 struct Misfit {
   const fit::TestResidual& residual;

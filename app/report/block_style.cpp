@@ -18,13 +18,16 @@ const char* block_style() {
 .verdict { font-size: 1.1rem; max-width: none; border-left: 5px solid; padding-left: .75rem; margin: .6rem 0; }
 .verdict.good { border-color: var(--good); } .verdict.fair { border-color: var(--fair); }
 .verdict.poor { border-color: var(--poor); }
-.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(9.5rem, 1fr)); gap: .6rem; margin: .3rem 0 .8rem; }
+.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(9.5rem, 1fr)); gap: .6rem; margin: .3rem 0; }
 .tiles div { border: 1px solid var(--rule); border-radius: 4px; padding: .35rem .6rem; }
 .tiles dt { font-size: .85rem; color: var(--quiet); }
 .tiles dd { margin: 0; font-size: .82rem; line-height: 1.35; }
 .tiles b { display: block; font-size: 1.45rem; line-height: 1.2; font-weight: 600; }
-header > .source, header table { margin: .3rem 0; }
+header > .source { font-size: .9rem; margin: .3rem 0; }
+header table { margin: .5rem 0; }
 header p, header ul { margin: .4rem 0; max-width: none; }
+nav ol { columns: auto; display: flex; flex-wrap: wrap; gap: .1rem 1rem; padding: .4rem 0 0; margin: .4rem 0 0; list-style: none;
+  border-top: 1px solid var(--rule); font-size: .9rem; }
 header h2 { margin: .6rem 0 .2rem; padding: 0; border: 0; font-size: 1rem; }
 .heat0 { background: var(--heat0); } .heat1 { background: var(--heat1); } .heat2 { background: var(--heat2); }
 .heat3 { background: var(--heat3); color: var(--on-heat); } .heat4 { background: var(--heat4); color: var(--on-heat); }

@@ -15,7 +15,7 @@ namespace {
 
 using dem::PackingPicture;
 
-constexpr double kPanelWidth = 470, kMargin = 10, kTop = 24;  // [px]
+constexpr double kPanelWidth = 470, kMargin = 10, kHeading = 24;  // [px]
 constexpr std::array<double, 6> kForceSteps{0.25, 0.75, 1.25,
                                             1.75, 2.5,  3.5};  ///< of chains drawn alike, over the mean
 
@@ -29,8 +29,8 @@ std::string panel_svg(const std::string& title, double height, const std::string
 /// Spheres in grey; chains as wide as their force, those above the mean in colour. `scale` [px per mean radius].
 std::string slice_svg(const std::string& title, const PackingPicture& picture, double scale, double height,
                       const std::string& clip) {
-  const double left = (kPanelWidth - scale * picture.width) / 2, bottom = kTop + scale * picture.height;
-  const std::string frame = fmt::format("x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"", pixels(left), pixels(kTop),
+  const double left = (kPanelWidth - scale * picture.width) / 2, bottom = kHeading + scale * picture.height;
+  const std::string frame = fmt::format("x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"", pixels(left), pixels(kHeading),
                                         pixels(scale * picture.width), pixels(scale * picture.height));
   std::string svg = fmt::format(
       "<clipPath id=\"{}\"><rect {}/></clipPath>\n<g clip-path=\"url(#{})\">\n<g class=\"k7 f\" "
@@ -72,7 +72,7 @@ std::string rose_path(const std::vector<double>& rose, double scale, double x, d
 
 std::string rose_svg(const std::string& title, const std::vector<double>& before, const std::vector<double>& after,
                      const dem::ShearPictures& pictures) {
-  constexpr double radius = 100, x = kPanelWidth / 2, y = kTop + 22 + radius;
+  constexpr double radius = 100, x = kPanelWidth / 2, y = kHeading + 22 + radius;
   const double largest = std::max(*std::ranges::max_element(before), *std::ranges::max_element(after));
   const double scale = radius / largest;
   const auto label = [&](double at_x, double at_y, const std::string& words) {
@@ -102,7 +102,7 @@ double along_over_across(const std::vector<double>& rose) {
 Drawing packing_drawing(const dem::ShearPictures& pictures) {
   const PackingPicture &before = pictures.before, &after = pictures.after;
   const double scale = (kPanelWidth - 2 * kMargin) / std::max(before.width, after.width);
-  const double height = kTop + scale * std::max(before.height, after.height) + kMargin;
+  const double height = kHeading + scale * std::max(before.height, after.height) + kMargin;
   const std::string strain = significant(pictures.strain, 3);
   std::string caption = fmt::format(
       "{}: {} spheres at ν = {}, sheared at constant volume to a deviatoric strain of {}. Grey: what a plane cuts of "

@@ -221,16 +221,13 @@ Figure prediction_figure(const predict::PredictionFolder& prediction, const Cali
   const std::string folder = "predictions/" + prediction.name + "/";
   std::vector<std::string> sources{folder + "prediction.json", folder + "*.csv"};
   if (compared) sources.push_back(folder + "dem/");
+  const std::string runs = compared ? "DEM on packings that the calibration never saw (" + seed_count(shown.dem) + ")."
+                                    : "No DEM run of this path; grainlaw predict with --dem makes them.";
   const std::string residual =
-      has_band(prediction)
-          ? "Below: DEM minus law over the half width of the law's 95 % band of a single run, a line for each "
-            "run; within the grey strip a run is where the law says that it should be."
-          : "Below: DEM minus law, a line for each run; the law has no band of a single run here.";
-  const std::string runs =
-      compared ? "Grey: DEM on packings that the calibration never saw (" + seed_count(shown.dem) + "). " + residual
-               : "No DEM run of this path; grainlaw predict with --dem makes them.";
-  const std::string pressure =
-      shown.by_ratio ? "Pressure over that of isotropic unloading at the same density, Eq. 14. " : "";
+      !compared ? ""
+      : has_band(prediction)
+          ? " Below: DEM − law in half widths of the 95 % band of a single run, within the grey strip as expected."
+          : " Below: DEM − law; there is no band of a single run.";
   return {
       .id = prediction_id(index),
       .title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
@@ -239,10 +236,9 @@ Figure prediction_figure(const predict::PredictionFolder& prediction, const Cali
           "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs "
           "on packings that the calibration never saw, the thick line the recommended prediction of the law with its "
           "bands. Below each the residuals.",
-      .caption = plain(fmt::format(
-          "{} {}Thick line: {}, recommended: {}. Shaded about it: {}. By what it contains the path needs {}: {}.", runs,
-          pressure, to_string(prediction.recommended.rung), prediction.recommended.why, prediction.bands,
-          to_string(prediction.needed.rung), prediction.needed.why)),
+      .caption = plain(fmt::format("{}{} Thick: {}, recommended: {}. Bands: {}. The path needs {}: {}.", runs, residual,
+                                   to_string(prediction.recommended.rung), prediction.recommended.why, prediction.bands,
+                                   to_string(prediction.needed.rung), prediction.needed.why)),
       .sources = sources,
       .panels = panels,
       .columns = 3,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "app/report/series.hpp"
@@ -20,6 +21,9 @@ using chain::ErrorOverPaths, chain::PathError, chain::ReportInput;
 constexpr std::array<double, kHeats - 1> kShades{0.025, 0.05, kGood, kRough};
 constexpr std::array<const char*, 3> kSymbols{"{P}*", "{s}", "{F}"};
 constexpr std::array<const char*, 3> kNames{"pressure", "stress ratio", "fabric"};
+/// The kinds in words, in their order.
+constexpr std::array<const char*, 4> kWhere{"shear one way, no expansion", "the volume grows", "the shear turns",
+                                            "the shear turns back twice or more"};
 constexpr double kLeastShare = 0.9;      // of rows in a 95 % band, below which it is said
 constexpr int kManyPackings = 10;        // from which on their number is no reservation
 constexpr double kJackknifeIsLarge = 2;  // over the stated error
@@ -51,28 +55,21 @@ std::size_t paths_of(const std::vector<PathError>& errors, const auto& keep) {
   return names.size();
 }
 
-/// The worst of the three quantities over the paths of a kind; NaN where there is none.
-double worst_of(const std::vector<PathError>& errors, PathKind kind) {
-  double worst = kUndefined;
-  for (const Rehearsed quantity : kValues<Rehearsed>) {
-    const ErrorOverPaths over = recommended_over(errors, quantity, [=](const PathError& e) { return e.kind == kind; });
-    if (over.paths > 0 && !(over.rms <= worst)) worst = over.rms;
-  }
-  return worst;
+constexpr std::array<const char*, 3> kGrades{"good", "rough", "poor"};
+
+/// Place in kGrades of a quantity on the paths of a kind: by all of them, or by the predicted ones where these do worse; nothing without any.
+std::optional<std::size_t> grade_of(const std::vector<PathError>& errors, Rehearsed quantity, PathKind kind) {
+  const auto all = recommended_over(errors, quantity, [=](const PathError& e) { return e.kind == kind; });
+  const auto predicted =
+      recommended_over(errors, quantity, [=](const PathError& e) { return e.kind == kind && is_predicted(e); });
+  if (all.paths == 0) return std::nullopt;
+  const double error = std::max(all.rms, predicted.rms);
+  return error <= kGood ? 0 : error <= kRough ? 1 : 2;
 }
 
 std::string list_of(const std::vector<std::string>& words) {
   if (words.size() < 2) return words.empty() ? "" : words.front();
   return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
-}
-
-/// Value of the provenance's `what` as `file` says it; empty without.
-std::string fact_of(const ReportInput& input, const std::string& what, const std::string& file) {
-  for (const chain::Fact& fact : input.provenance) {
-    if (fact.what == what && std::find(fact.files.begin(), fact.files.end(), file) != fact.files.end())
-      return fact.value;
-  }
-  return "";
 }
 
 Paragraph subject(const ReportInput& input) {
@@ -84,7 +81,8 @@ Paragraph subject(const ReportInput& input) {
   }
   const ValidRange& range = input.calibration.law.range;
   const std::size_t packings = seeds_of(input.tests).size();
-  const std::string command = fact_of(input, "command", "parameters.json");
+  std::string command = fact_of(input, "command", "dataset/dataset.json");
+  if (command.empty()) command = fact_of(input, "command", "parameters.json");
   return {notation(fmt::format(
               "Calibrated from grains: {} {} of {} frictionless spheres, {} tests fitted, {{ν}} = {:.3g} to "
               "{:.3g}, deviatoric strain up to {:.3g}",
@@ -101,9 +99,9 @@ Tile cost_tile(const ReportInput& input) {
     steps += static_cast<double>(input.costs[i].steps) * static_cast<double>(input.tests[i].packing.particles);
   }
   const std::string fit = fact_of(input, "seconds", "parameters.json");
-  return {plain("cost of the data"), plain(duration(seconds)),
-          fmt::format("on one thread, {} particle-steps{}", significant(steps, 2),
-                      fit.empty() ? "" : "; calibrate took " + duration(std::strtod(fit.c_str(), nullptr)))};
+  return {plain("cost"), plain(duration(seconds)),
+          fmt::format("of DEM on one thread, {} billion particle-steps{}", significant(steps / 1e9, 3),
+                      fit.empty() ? "" : "; the last calibrate took " + duration(std::strtod(fit.c_str(), nullptr)))};
 }
 
 Tiles error_tiles(const ReportInput& input, const std::vector<PathError>& errors) {
@@ -111,14 +109,9 @@ Tiles error_tiles(const ReportInput& input, const std::vector<PathError>& errors
   const std::size_t shown = predicted ? paths_of(errors, is_predicted) : paths_of(errors, any),
                     all = paths_of(errors, any);
   Tiles tiles{
-      fmt::format("Error of the recommended rung on {} {} that the fit never saw: root mean square over the largest "
-                  "value, with the range over the paths",
-                  shown, predicted ? "predicted paths" : "rehearsed paths"),
+      fmt::format("Error on {} {} {} that the fit never saw: root mean square over the largest value, recommended rung",
+                  shown, predicted ? "predicted" : "rehearsed", shown == 1 ? "path" : "paths"),
       {}};
-  if (shown == 1)
-    tiles.caption =
-        "Error of the recommended rung on one path that the fit never saw: root mean square over the "
-        "largest value";
   for (const Rehearsed quantity : kValues<Rehearsed>) {
     const auto i = static_cast<std::size_t>(quantity);
     const ErrorOverPaths over =
@@ -146,7 +139,12 @@ void doubt_fit(const ReportInput& input, std::vector<Reservation>& all) {
          fmt::format("Not converged: {}. Values and errors of these stages are not the optimum's.", list_of(stages)),
          "misfit"});
   }
-  for (const std::string& warning : input.warnings) all.push_back({95, warning, "provenance"});
+  if (!input.warnings.empty())
+    all.push_back(
+        {95,
+         input.warnings.front() +
+             (input.warnings.size() > 1 ? fmt::format(" And {} more of this kind.", input.warnings.size() - 1) : ""),
+         "warnings"});
   const auto packings = static_cast<int>(seeds_of(input.tests).size());
   if (packings < kManyPackings)
     all.push_back(
@@ -223,10 +221,10 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
   }
   if (!untried.empty() && !errors.empty())
     all.push_back(
-        {45, fmt::format("Never tried: {} paths. Nothing here speaks for them.", list_of(untried)), "unseen"});
+        {45, fmt::format("Never tried: {} paths. Nothing here speaks for them.", list_of(untried)), "predictions"});
   for (const predict::PredictionFolder& prediction : input.predictions) {
     for (const std::string& warning : prediction.warnings)
-      all.push_back({36, prediction.name + ": " + warning + ".", "predictions"});
+      all.push_back({36, prediction.name + ": " + warning + ".", "warnings"});
     if (!prediction.failures.empty())
       all.push_back({52,
                      fmt::format("{}: the law did not converge on {} of its curves.", prediction.name,
@@ -271,19 +269,35 @@ Paragraph verdict(const ReportInput& input, const std::vector<PathError>& errors
                   "well it "
                   "predicts is not known."),
             Tone::poor};
-  std::vector<std::string> good, rough, poor;
-  for (const PathKind kind : kValues<PathKind>) {
-    const double worst = worst_of(errors, kind);
-    if (std::isnan(worst)) continue;
-    (worst <= kGood ? good : worst <= kRough ? rough : poor).push_back(to_string(kind));
+  std::vector<std::string> clauses;
+  std::set<PathKind> kinds;
+  std::size_t worst = 0;
+  for (const Rehearsed quantity : kValues<Rehearsed>) {
+    std::array<std::vector<std::string>, kGrades.size()> by_grade;
+    for (const PathKind kind : kValues<PathKind>) {
+      const std::optional<std::size_t> grade = grade_of(errors, quantity, kind);
+      if (!grade) continue;
+      by_grade[*grade].push_back(to_string(kind));
+      kinds.insert(kind);
+      worst = std::max(worst, *grade);
+    }
+    // what most kinds are, and the exceptions
+    const auto most = static_cast<std::size_t>(
+        std::ranges::max_element(by_grade, {}, [](const auto& of) { return of.size(); }) - by_grade.begin());
+    if (by_grade[most].empty()) continue;
+    std::string clause = fmt::format("{} {}", kNames[static_cast<std::size_t>(quantity)], kGrades[most]);
+    for (std::size_t g = 0; g < by_grade.size(); ++g) {
+      if (g != most && !by_grade[g].empty())
+        clause += fmt::format(", {} on {} paths", kGrades[g], list_of(by_grade[g]));
+    }
+    clauses.push_back(clause);
   }
-  std::vector<std::string> words;
-  if (!good.empty()) words.push_back(fmt::format("good for {} paths (every quantity within 10 %)", list_of(good)));
-  if (!rough.empty()) words.push_back(fmt::format("rough for {} paths (within 25 %)", list_of(rough)));
-  if (!poor.empty()) words.push_back(fmt::format("not to be used for {} paths (beyond 25 %)", list_of(poor)));
-  std::string sentence = fmt::format("{}.", fmt::join(words, "; "));
-  sentence[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(sentence[0])));
-  return {plain(sentence), !poor.empty() ? Tone::poor : rough.empty() ? Tone::good : Tone::fair};
+  constexpr std::array openings{"Usable as it is", "Usable with care", "Usable in part"};
+  constexpr std::array tones{Tone::good, Tone::fair, Tone::poor};
+  const std::string where = kinds.size() == 1 ? fmt::format(", on {} paths", to_string(*kinds.begin())) : "";
+  return {plain(fmt::format("{}{}: {}. (Good: within 10 % of the largest value, rough: within 25 %, poor: beyond.)",
+                            openings[worst], where, fmt::join(clauses, "; "))),
+          tones[worst]};
 }
 
 Table errors_by_kind(const std::vector<PathError>& errors) {
@@ -307,12 +321,14 @@ Table errors_by_kind(const std::vector<PathError>& errors) {
       return shade;
     };
   };
-  return table_of("By kind of path, recommended rung: error over all its unseen paths [%], range over them", "", kinds,
-                  {{"paths", Content::words,
-                    [](const OfKind& row) { return Cell(fmt::format("{} ({})", to_string(row.kind), row.paths)); }},
-                   {"{P}*", Content::number, cell(0)},
-                   {"{s}", Content::number, cell(1)},
-                   {"{F}", Content::number, cell(2)}});
+  return table_of(
+      "By kind of path: error of the recommended rung and its range over the paths", "", kinds,
+      {{"kind (paths)", Content::words,
+        [](const OfKind& row) { return Cell(fmt::format("{} ({})", to_string(row.kind), row.paths)); }},
+       {"where", Content::words, [](const OfKind& row) { return kWhere[static_cast<std::size_t>(row.kind)]; }},
+       {"{P}*", Content::number, cell(0)},
+       {"{s}", Content::number, cell(1)},
+       {"{F}", Content::number, cell(2)}});
 }
 
 std::vector<Block> first_screen(const ReportInput& input, const std::vector<PathError>& errors) {
@@ -329,7 +345,7 @@ std::vector<Block> first_screen(const ReportInput& input, const std::vector<Path
     three.lines.push_back(all[i].words);
     three.sections.push_back(all[i].section);
   }
-  block.contents.emplace_back(Paragraph{plain("What to distrust first:")});
+  block.contents.emplace_back(Paragraph{plain("Distrust first:")});
   block.contents.emplace_back(three);
   return {block};
 }

@@ -95,9 +95,8 @@ std::string html_of(const Items& items) {
   std::string html = "<ul>\n";
   for (std::size_t i = 0; i < items.lines.size(); ++i) {
     const std::string section = i < items.sections.size() ? items.sections[i] : "";
-    html += "<li>" + to_html(plain(items.lines[i]));
-    if (!section.empty()) html += fmt::format(" <a href=\"#{}\">See there</a>.", section);
-    html += "</li>\n";
+    const std::string line = to_html(plain(items.lines[i]));
+    html += "<li>" + (section.empty() ? line : fmt::format("<a href=\"#{}\">{}</a>", section, line)) + "</li>\n";
   }
   return html + "</ul>";
 }

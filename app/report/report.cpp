@@ -55,7 +55,9 @@ Section predictions(const chain::ReportInput& input, const std::vector<chain::Pa
     section.blocks.push_back(folded("Path by path: the rehearsals", table));
   for (std::size_t i = 0; i < input.predictions.size(); ++i) {
     const predict::PredictionFolder& prediction = input.predictions[i];
-    section.blocks.push_back(open(prediction_figure(prediction, input.calibration.law, i)));
+    Figure figure = prediction_figure(prediction, input.calibration.law, i);
+    if (prediction.provenance.is_object()) figure.command = prediction.provenance.value("command", "");
+    section.blocks.push_back(open(std::move(figure)));
     section.blocks.push_back(folded(prediction.name + ": run by run", prediction_table(prediction)));
   }
   if (!input.predictions.empty())
@@ -138,6 +140,12 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   };
   if (other != nullptr) page.sections.push_back(comparison(input, errors, *other, name));
   page.sections.push_back(predictions(input, errors));
+  // all figures but those of predictions and studies are made of what calibrate wrote
+  const std::string command = fact_of(input, "command", "parameters.json");
+  const auto of_calibrate = [&](Figure figure) {
+    figure.command = command;
+    return open(std::move(figure));
+  };
   if (!modes.verdicts.empty()) {
     add("published", "Beside the published numbers, mode by mode",
         {open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),
@@ -146,19 +154,21 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   }
   page.sections.push_back(parameters(calibration.law));
   add("shear", "The law over the shear tests",
-      {open(sheared_pressure_figure(input)), open(stress_ratio_figure(input)), open(fabric_figure(input))});
+      {of_calibrate(sheared_pressure_figure(input)), of_calibrate(stress_ratio_figure(input)),
+       of_calibrate(fabric_figure(input))});
   if (input.pictures) page.sections.back().blocks.push_back(open(packing_drawing(*input.pictures)));
-  add("laws", "Shear parameters over density", {open(shear_law_figure(input))});
+  add("laws", "Shear parameters over density", {of_calibrate(shear_law_figure(input))});
   add("state", "Pressure, coordination and rattlers",
-      {open(density_figure(input)), open(scaled_density_figure(input)), open(modes_figure(input))});
+      {of_calibrate(density_figure(input)), of_calibrate(scaled_density_figure(input)),
+       of_calibrate(modes_figure(input))});
   page.sections.push_back(choices(input));
   add("misfit", "What the coupled fit leaves over",
-      {text(dilatancy_gap(input)), open(residual_figure(input)),
+      {text(dilatancy_gap(input)), of_calibrate(residual_figure(input)),
        folded("All numbers, test by test", residual_table(calibration)),
        folded("Stages of the fit", stage_table(calibration))});
   page.sections.push_back(checks(calibration));
   add("quality", "How quasi-static and how exact the runs were",
-      {open(preparation_quality_figure(input)), open(shear_quality_figure(input))});
+      {of_calibrate(preparation_quality_figure(input)), of_calibrate(shear_quality_figure(input))});
   if (warnings.empty())
     add("warnings", "Warnings", {text("None.")});
   else

@@ -115,20 +115,33 @@ Table forest(const CalibratedLaw& law, Forest which) {
   };
   std::vector<ColumnOf<Parameter>> columns{{"", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
                                            {"parameter", words, [](auto& p) { return p.info.name; }},
-                                           {which == Forest::densities ? "{ν} = .63 … .69"
-                                            : which == Forest::ratios  ? "over published: 0 … 2"
-                                                                       : "over its own value: 0 … 2",
-                                            symbol, bar},
+                                           {"", symbol, bar},
                                            {"ours ± standard error", number, estimate_cell}};
   if (which != Forest::own) columns.push_back({"published", number, [](auto& p) { return digits(p.published(), 5); }});
   Table table =
       table_of(which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
                : which == Forest::ratios  ? "Parameters over the published value: ours with 95 % interval (dot), "
-                                            "published (bar, at 1)"
-                                          : "Parameters that nobody published, over their own value",
+                                            "published (bar)"
+                                          : "Parameters that the paper does not have, over their own value",
                "parameters.json", shown, columns);
-  table.bar_from = which == Forest::densities ? 0.63 : 0;
-  table.bar_to = which == Forest::densities ? 0.69 : 2;
+  // to both ends whatever is drawn, but no farther than none and twice the value
+  table.bar_from = 1e300, table.bar_to = -1e300;
+  for (const auto& row : table.rows) {
+    for (const double x : {row[2].bar->lower, row[2].bar->value, row[2].bar->upper, row[2].bar->reference}) {
+      if (!std::isfinite(x)) continue;
+      table.bar_from = std::min(table.bar_from, x);
+      table.bar_to = std::max(table.bar_to, x);
+    }
+  }
+  if (which != Forest::densities) {
+    table.bar_from = std::clamp(table.bar_from, 0.0, 0.8);
+    table.bar_to = std::clamp(table.bar_to, 1.2, 2.0);
+  }
+  table.columns[2].heading = notation(fmt::format("{}{} … {}",
+                                                  which == Forest::densities ? "{ν} = "
+                                                  : which == Forest::ratios  ? "over published: "
+                                                                             : "over its own: ",
+                                                  significant(table.bar_from, 3), significant(table.bar_to, 3)));
   return table;
 }
 

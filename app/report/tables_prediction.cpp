@@ -43,11 +43,10 @@ Table unseen_table(const std::vector<chain::PathError>& errors, bool predicted,
       predicted ? "predictions/*/comparison.json" : "parameters.json", shown,
       {{"path", words,
         [&](const chain::PathError& e) {
-          Cell path(e.path);
+          Cell path(predicted ? e.path : e.path + " (" + to_string(e.kind) + ")");
           path.link = link(e);
           return path;
         }},
-       {"kind", words, [](const chain::PathError& e) { return to_string(e.kind); }},
        {"rung", words, [](const chain::PathError& e) { return to_string(e.rung) + (e.recommended ? " ★" : ""); }},
        {"{P}*", number, cell(0)},
        {"{s}", number, cell(1)},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string_view>
 
 namespace grainlaw::app::report {
@@ -21,10 +22,9 @@ struct Cause {
   const char* consequence;
 };
 constexpr std::array kCauses{
-    Cause{
-        "energy residual above", "energy balance of a run off by more than 0.1 % of its work",
-        "The time step's error: about this share in the stresses of these rows. Half the time_step_fraction makes it a "
-        "quarter, at twice the cost; beyond 1 % a run stops."},
+    Cause{"energy residual above", "energy balance of a run off by more than 0.1 % of its work",
+          "The time step's error, taken as that of the stresses in these rows. Half the time_step_fraction makes it a "
+          "quarter, at twice the cost; beyond 1 % a run stops."},
     Cause{"minimisations stopped short", "states not quite at rest",
           "Rows there are a little out of equilibrium; a larger relax.max_passes brings them nearer."},
     Cause{"not at rest", "probes of moduli not at rest", "Their moduli carry what the packing still moves."},
@@ -46,6 +46,12 @@ constexpr std::array kCauses{
           "Law and data of this page do not belong together; calibrate again."},
     Cause{"other parameters", "predictions of other parameters", "They do not belong to this law; predict again."}};
 
+/// The number behind "up to"; 0 without.
+double largest_in(const std::string& text) {
+  const std::size_t at = text.find("up to ");
+  return at == std::string::npos ? 0 : std::strtod(text.c_str() + at + 6, nullptr);
+}
+
 void add_warning(const std::string& where, const std::string& text, std::vector<WarningGroup>& groups) {
   const auto known = std::find_if(kCauses.begin(), kCauses.end(),
                                   [&](const Cause& c) { return text.find(c.words) != std::string::npos; });
@@ -53,6 +59,8 @@ void add_warning(const std::string& where, const std::string& text, std::vector<
   auto group = std::find_if(groups.begin(), groups.end(), [&](const WarningGroup& g) { return g.cause == cause; });
   if (group == groups.end())
     group = groups.insert(groups.end(), {cause, known == kCauses.end() ? "" : known->consequence, text});
+  else if (largest_in(text) > largest_in(group->example))
+    group->example = text;
   if (std::find(group->where.begin(), group->where.end(), where) == group->where.end()) group->where.push_back(where);
 }
 
@@ -71,8 +79,7 @@ void add_inertia(const TestRecord& test, std::vector<WarningGroup>& groups) {
   if (group == groups.end())
     group = groups.insert(
         groups.end(),
-        {cause,
-         "Stress there holds a part of the rate's, as I does; half the strain_rate halves it, at twice the cost.",
+        {cause, "Inertia adds to the stress there; half the strain_rate halves the inertial number, at twice the cost.",
          fmt::format("{} of {} rows, up to {:.2g} at nu = {:.4f}", rows, test.rows.size(), worst, nu)});
   group->where.push_back(test.name);
 }

@@ -12,7 +12,7 @@ namespace grainlaw::app::report {
 struct WarningGroup {
   std::string cause;
   std::string consequence;              ///< what it means, or what the limit costs
-  std::string example;                  ///< the first one
+  std::string example;                  ///< the worst, or the first one
   std::vector<std::string> where = {};  ///< tests, predictions or files, each once
 };
 

@@ -139,11 +139,15 @@ TEST(ReportFigure, HostileLabelsAndNamesStayText) {
   figure.caption = plain(hostile);
   figure.panels[0].title = plain(hostile);
   figure.panels[0].series[0].label = plain(hostile);
-  Table table{hostile, {{plain(hostile)}}, {{plain(hostile)}}, hostile};
+  Cell barred(hostile);
+  barred.bar = Bar{0, 0.5, 1, 0.2};
+  Table table{hostile, {{plain(hostile)}, {plain(hostile)}}, {{plain(hostile), barred}}, hostile};
+  table.notes = {hostile};
+  const Tiles tiles{hostile, {{plain(hostile), plain(hostile), hostile}}};
   Page page;
   page.title = hostile;
   page.lead = {{{Paragraph{plain(hostile)}, Warning{hostile, "s", hostile}}}};
-  page.sections = {{"s", hostile, {{{figure, table}, hostile}, {{Items{{hostile}}}}}}};
+  page.sections = {{"s", hostile, {{{figure, table, tiles}, hostile}, {{Items{{hostile}, {"s"}}}}}}};
   const std::string html = page_html(page);
   EXPECT_EQ(test::first_markup_error(html), "");
   EXPECT_EQ(count(html, "<script>"), 0);
