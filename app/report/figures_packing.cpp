@@ -27,8 +27,7 @@ std::string panel_svg(const std::string& title, double height, const std::string
 }
 
 /// Spheres in grey; chains as wide as their force, those above the mean in colour. `scale` [px per mean radius].
-std::string slice_svg(const std::string& title, const PackingPicture& picture, double scale, double height,
-                      const std::string& clip) {
+std::string slice_svg(const std::string& title, const PackingPicture& picture, double scale, const std::string& clip) {
   const double left = (kPanelWidth - scale * picture.width) / 2, bottom = kHeading + scale * picture.height;
   const std::string frame = fmt::format("x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"", pixels(left), pixels(kHeading),
                                         pixels(scale * picture.width), pixels(scale * picture.height));
@@ -51,7 +50,7 @@ std::string slice_svg(const std::string& title, const PackingPicture& picture, d
   for (std::size_t i = 0; i < paths.size(); ++i)
     svg += fmt::format("<path class=\"{} l\" stroke-width=\"{:.1f}\" stroke-linecap=\"round\" d=\"{}\"/>\n",
                        kForceSteps[i] < 1 ? "k1" : "k2", 1.1 * (kForceSteps[i] + 0.25), paths[i].data());
-  return panel_svg(title, height, svg + fmt::format("</g>\n<rect class=\"axis\" {}/>\n", frame));
+  return panel_svg(title, bottom + kMargin, svg + fmt::format("</g>\n<rect class=\"axis\" {}/>\n", frame));
 }
 
 /// Both halves of a rose whose bins are over 180 degrees.
@@ -102,7 +101,6 @@ double along_over_across(const std::vector<double>& rose) {
 Drawing packing_drawing(const dem::ShearPictures& pictures) {
   const PackingPicture &before = pictures.before, &after = pictures.after;
   const double scale = (kPanelWidth - 2 * kMargin) / std::max(before.width, after.width);
-  const double height = kHeading + scale * std::max(before.height, after.height) + kMargin;
   const std::string strain = significant(pictures.strain, 3);
   std::string caption = fmt::format(
       "{}: {} spheres at ν = {}, sheared at constant volume to a deviatoric strain of {}. Grey: what a plane cuts of "
@@ -116,8 +114,8 @@ Drawing packing_drawing(const dem::ShearPictures& pictures) {
       "Spheres cut by a plane, lines between the centres of those that touch, as wide as the force; and how many "
       "contacts, "
       "and how much force, there is in each direction of the plane.";
-  drawing.panels = {slice_svg("before shear", before, scale, height, "packing-before"),
-                    slice_svg("after shear to " + strain, after, scale, height, "packing-after")};
+  drawing.panels = {slice_svg("before shear", before, scale, "packing-before"),
+                    slice_svg("after shear to " + strain, after, scale, "packing-after")};
   if (!before.count.empty() && !after.count.empty()) {
     drawing.panels.push_back(rose_svg("contacts", before.count, after.count, pictures));
     drawing.panels.push_back(rose_svg("forces", before.force, after.force, pictures));

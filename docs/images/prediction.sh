@@ -54,7 +54,7 @@ awk -F, -v errors="$(tr '\n' ' ' <<<"$errors")" -v packings="${#runs[@]}" -v sph
     print "<path stroke=\"#0072b2\" stroke-width=\"2.2\" d=\"M450 18h26\"/><text x=\"482\" y=\"22\">the law along this path; shaded: 95 % of the mean, of a single run</text>"
     for (q = 1; q <= 3; ++q) {
       printf "<text x=\"%d\" y=\"%d\" font-weight=\"600\">%s</text>", left(q), head - 10, title[q]
-      printf "<text x=\"%d\" y=\"%d\" text-anchor=\"end\" fill=\"#5c5c5c\">off by %.1f %%</text>\n", left(q) + width, head - 10, 100 * error[q]
+      printf "<text x=\"%d\" y=\"%d\" text-anchor=\"end\" fill=\"#5c5c5c\">rms %.1f %%</text>\n", left(q) + width, head - 10, 100 * error[q]
       for (value = 0; value < top[q] * 1.001; value += tick[q])
         printf "<path stroke=\"#ececec\" d=\"M%d %sh%d\"/><text x=\"%d\" y=\"%s\" text-anchor=\"end\">%s</text>\n",
           left(q), py(q, value), width, left(q) - 6, py(q, value) + 4, value
