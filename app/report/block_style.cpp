@@ -6,7 +6,7 @@ namespace grainlaw::app::report {
 // the numbers stand in the cells.
 const char* block_style() {
   return R"(:root {
-  --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #4f97c9; --heat4: #14507f; --on-heat: #ffffff;
+  --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #2e75a9; --heat4: #14507f; --on-heat: #ffffff;
   --good: #00734f; --fair: #9a6700; --poor: #b3261e;
 }
 @media (prefers-color-scheme: dark) {
@@ -35,7 +35,7 @@ header h2 { margin: .6rem 0 .2rem; padding: 0; border: 0; font-size: 1rem; }
 .bar { display: inline-block; width: 13rem; min-width: 0; height: 1rem; vertical-align: middle; overflow: visible; }
 .note td { font-size: .85rem; color: var(--quiet); padding-left: 1.5rem; max-width: 46rem; }
 @media print {
-  :root { --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #4f97c9; --heat4: #14507f; --on-heat: #ffffff; }
+  :root { --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #2e75a9; --heat4: #14507f; --on-heat: #ffffff; }
   .verdict, .tiles div, td { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )";
