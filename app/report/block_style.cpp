@@ -6,7 +6,7 @@ namespace grainlaw::app::report {
 // the numbers stand in the cells.
 const char* block_style() {
   return R"(:root {
-  --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #4f97c9; --heat4: #14507f; --on-heat: #ffffff;
+  --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #2c70a3; --heat4: #0c3c62; --on-heat: #ffffff;
   --good: #00734f; --fair: #9a6700; --poor: #b3261e;
 }
 @media (prefers-color-scheme: dark) {
@@ -31,11 +31,12 @@ nav ol { columns: auto; display: flex; flex-wrap: wrap; gap: .1rem 1rem; padding
 header h2 { margin: .6rem 0 .2rem; padding: 0; border: 0; font-size: 1rem; }
 .heat0 { background: var(--heat0); } .heat1 { background: var(--heat1); } .heat2 { background: var(--heat2); }
 .heat3 { background: var(--heat3); color: var(--on-heat); } .heat4 { background: var(--heat4); color: var(--on-heat); }
+[class*=heat]::before { color: inherit; }
 .heat0 a, .heat1 a, .heat2 a, .heat3 a, .heat4 a { color: inherit; }
 .bar { display: inline-block; width: 13rem; min-width: 0; height: 1rem; vertical-align: middle; overflow: visible; }
 .note td { font-size: .85rem; color: var(--quiet); padding-left: 1.5rem; max-width: 46rem; }
 @media print {
-  :root { --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #4f97c9; --heat4: #14507f; --on-heat: #ffffff; }
+  :root { --heat0: #f3f8fc; --heat1: #d3e5f3; --heat2: #9dc6e3; --heat3: #2c70a3; --heat4: #0c3c62; --on-heat: #ffffff; }
   .verdict, .tiles div, td { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 }
 )";

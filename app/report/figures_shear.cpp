@@ -139,9 +139,9 @@ Figure figure_of_shear(const chain::ReportInput& input, const Shear& what) {
         line, 0, end, [&](double e) { return what.published(published_parameters(), key.nu, e); }, kPointsOfFit));
   }
   std::string caption =
-      "Grey: DEM runs that were fitted or described. Thick line: the recommended rung from the law's own start, for D3 "
-      "with the "
-      "factors of its Lode angle; other rungs";
+      "Grey: DEM runs. Thick line: the recommended rung from the law's own start, for D3 with the factors of its Lode "
+      "angle; "
+      "runs from the loading branch are outside the law, which knows that of unloading. Other rungs";
   caption += what.equation == nullptr
                  ? " behind the buttons."
                  : std::string(" and Eq. ") + what.equation +

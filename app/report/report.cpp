@@ -78,6 +78,19 @@ Section checks(const fit::Calibration& calibration) {
   return section;
 }
 
+/// "74 agree, 47 differ of 191".
+template <class Judged, class Keep>
+std::string agreement(const std::vector<Judged>& all, const Keep& keep) {
+  int agree = 0, differ = 0, of = 0;
+  for (const Judged& judged : all) {
+    if (!keep(judged)) continue;
+    ++of;
+    agree += judged.verdict == "agrees" ? 1 : 0;
+    differ += judged.verdict == "differs" ? 1 : 0;
+  }
+  return fmt::format("{} agree, {} differ of {}", agree, differ, of);
+}
+
 /// Error against cost of the program's choices.
 Section choices(const chain::ReportInput& input) {
   Section section{"choices", "What the program's choices cost", {}};
@@ -148,7 +161,11 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   };
   if (!modes.verdicts.empty()) {
     add("published", "Beside the published numbers, mode by mode",
-        {open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),
+        {text("Statements: " + agreement(modes.claims, [](auto&) { return true; }) +
+              ". Points of curves: " + agreement(modes.verdicts, [](auto& v) { return v.nu.has_value(); }) +
+              ". Parameters: " + agreement(modes.verdicts, [](auto& v) { return !v.nu; }) +
+              ". The rest is undecided, most of it because its error is wider than what matters."),
+         open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),
          folded("Curves: which agree", verdict_table(modes.verdicts, false)),
          folded("Parameters: which agree", verdict_table(modes.verdicts, true))});
   }
@@ -158,9 +175,15 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
        of_calibrate(fabric_figure(input))});
   if (input.pictures) page.sections.back().blocks.push_back(open(packing_drawing(*input.pictures)));
   add("laws", "Shear parameters over density", {of_calibrate(shear_law_figure(input))});
+  const auto folded_figure = [&](const std::string& summary, Figure figure) {
+    Block block = of_calibrate(std::move(figure));
+    block.summary = summary;
+    return block;
+  };
   add("state", "Pressure, coordination and rattlers",
-      {of_calibrate(density_figure(input)), of_calibrate(scaled_density_figure(input)),
-       of_calibrate(modes_figure(input))});
+      {of_calibrate(density_figure(input)),
+       folded_figure("Scaled pressure, overlap and fabric trace", scaled_density_figure(input)),
+       folded_figure("Mode by mode, as the paper draws them", modes_figure(input))});
   page.sections.push_back(choices(input));
   add("misfit", "What the coupled fit leaves over",
       {text(dilatancy_gap(input)), of_calibrate(residual_figure(input)),
@@ -168,7 +191,9 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
        folded("Stages of the fit", stage_table(calibration))});
   page.sections.push_back(checks(calibration));
   add("quality", "How quasi-static and how exact the runs were",
-      {of_calibrate(preparation_quality_figure(input)), of_calibrate(shear_quality_figure(input))});
+      {text("What goes beyond a limit stands under Warnings, with what it costs."),
+       folded_figure("Compression and decompression", preparation_quality_figure(input)),
+       folded_figure("Element tests", shear_quality_figure(input))});
   if (warnings.empty())
     add("warnings", "Warnings", {text("None.")});
   else
@@ -177,7 +202,8 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   for (const Reservation& reason : reservations(input, errors)) reasons.push_back(reason.words);
   page.sections.back().blocks.push_back(folded("All reasons for distrust, weightiest first", Items{reasons}));
   add("provenance", "Provenance and cost",
-      {text(kReading), open(cost_table(input)), open(provenance_table(input)),
+      {text(kReading), open(cost_table(input)),
+       folded("Files, commands, versions and seconds", provenance_table(input)),
        folded("The resolved spec", spec_table(input)), folded("All runs", run_table(input))});
   return page;
 }

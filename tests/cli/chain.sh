@@ -11,7 +11,7 @@ JSON
 echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "UNI", "extent": {"target_nu": 0.80}}], "rows": 40}' >path.json
 
 "$grainlaw" calibrate spec.json -o out --threads 2 >first.txt 2>log || fail "calibrate: $(tail -1 log)"
-for file in spec.resolved.json parameters.json calibration.json dataset/dataset.json dataset/ISO-unloading-s1.csv dataset/D2-0.70-s2.csv; do
+for file in spec.resolved.json parameters.json calibration.json fitted_paths.json dataset/dataset.json dataset/ISO-unloading-s1.csv dataset/D2-0.70-s2.csv; do
   [[ -s out/$file ]] || fail "no $file"
 done
 grep -q 'pressure.p0' first.txt || fail "no table on stdout"
@@ -115,5 +115,9 @@ code=0
 
 "$grainlaw" report out -o report.html >table.txt
 [[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report
+grep -q 'class="verdict' report.html && grep -q 'Distrust first' report.html || fail "what a reader sees first"
+"$grainlaw" report refit -o refit.html --compare out >/dev/null
+grep -q 'Not judged' refit.html && grep -q 'grainlaw predict refit/parameters.json' refit.html || fail "a page without predictions"
+grep -q 'id="comparison"' refit.html || fail "report --compare"
 find . -name '.*tmp*' | grep -q . && fail "temporary files left"
 exit 0
