@@ -26,9 +26,8 @@ zsh_words() {
     zpty -w z "PS1=; unsetopt zle_bracketed_paste 2>/dev/null; fpath=('"$share"'/zsh/site-functions \$fpath); autoload -U compinit; compinit -u -D; LISTMAX=0; COLUMNS=200; LINES=200; zstyle \":completion:*\" list-prompt \"\""
     zpty -w z "print READY"
     while zpty -r z line; do [[ $line == READY* ]] && break; done
-    zpty -n -w z "$1"$'"'"'\t\t'"'"'
-    sleep 2
-    zpty -r -t z all; while [[ -n $all ]]; do print -r -- "$all"; zpty -r -t z all || break; done' - "$1" | tr -d '\r\a' | tr -s ' ' '\n'
+    zpty -n -w z "$1"$'"'"'\t\t\x15print DONE\n'"'"'
+    while zpty -r z line; do print -r -- "$line"; [[ $line == DONE* ]] && break; done' - "$1" | tr -d '\r\a' | tr -s ' ' '\n'
 }
 offers() { # SHELL LINE WORD...
   local shell=$1 line=$2

@@ -56,6 +56,9 @@ if [[ -w /dev/full ]]; then
   echo '{"spheres": "s.csv", "cell": [[0.01,0,0],[0,0.01,0],[0,0,0.01]]}' >t.json
   printf 'id,x,y,z,r\n0,0.001,0.001,0.001,0.001\n1,0.005,0.001,0.001,0.001\n' >s.csv
   code=0
+  "$grainlaw" help calibrate >/dev/full 2>err || code=$?
+  [[ $code == 1 ]] && grep -q 'standard output: cannot be written' err || fail "help to /dev/full: $code $(cat err)"
+  code=0
   "$grainlaw" simulate t.json -o two --quiet >/dev/full 2>err || code=$?
   [[ $code == 1 ]] && grep -q 'standard output: cannot be written' err || fail "/dev/full: $code $(cat err)"
 fi
