@@ -161,8 +161,11 @@ int run(int argc, char** argv) {
   if (const std::string slip = slip_in(app, words); !slip.empty()) return fail(ExitCode::invalid_input, slip);
   const CLI::App& command = command_of(app, words);
   if (help) {
-    print_result(command.help());
-    return static_cast<int>(ExitCode::ok);
+    const Task say = [&](Session&) {
+      print_result(command.help());
+      return ExitCode::ok;
+    };
+    return perform(say, common, "grainlaw help");
   }
   if (words.empty() || (words.size() == 1 && !commands_of(command).empty() && &command != &app)) {
     std::fputs((words.empty() ? overview(app) : command.help()).c_str(), stderr);

@@ -28,7 +28,7 @@ std::string text_of(const chain::PriorStudy& study, const fs::path& file) {
   text += "\nBiased by the size, beyond chance\n\n";
   for (const chain::SizeEffect& s : study.sizes) {
     if (s.biased)
-      text += fmt::format("{:<28} {:>6.0f}: {:>10.4g} ± {:<10.2g} {:>6.0f}: {:>10.4g} ± {:<10.2g} {:>6.1f}\n",
+      text += fmt::format("{}\n  {:>8.0f}: {:>10.4g} ± {:<10.2g} {:>8.0f}: {:>10.4g} ± {:<10.2g} {:>6.1f}\n",
                           s.parameter, s.particles, s.value, s.standard_error, s.larger_particles, s.larger_value,
                           s.larger_standard_error, s.distance);
   }

@@ -234,12 +234,13 @@ Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
 }
 
 std::string parameter_summary(const CalibratedLaw& law) {
-  std::string text = fmt::format("{:<28} {:<14} {:>26} {:>29} {:>10}\n", "parameter", "symbol", "ours ± standard error",
-                                 "95 % interval", "published");
-  text += std::string(111, '-') + "\n";
+  constexpr const char* kRow = "{:<25} {:>23} {:>20} {:>9}\n";  // 80 columns
+  std::string text =
+      fmt::format(fmt::runtime(kRow), "parameter", "ours ± standard error", "95 % interval", "published") +
+      std::string(80, '-') + "\n";
   for (const Parameter& p : parameters_of(law)) {
-    text += fmt::format("{:<28} {:<14} {:>26} {:>29} {:>10}\n", p.info.name, p.info.symbol,
-                        to_plain(estimate_cell(p).text), interval_of(p), significant(p.published(), 5));
+    text += fmt::format(fmt::runtime(kRow), p.info.name, to_plain(estimate_cell(p).text),
+                        p.says_nothing ? "not determined" : interval_of(p), significant(p.published(), 5));
   }
   return text;
 }

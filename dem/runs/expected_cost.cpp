@@ -20,7 +20,7 @@ constexpr double kBytesPerKept = 72;           // of a sphere in a kept state
 constexpr double kBytesPerEnd = 120;           // of a sphere in the state at the end of a test
 constexpr double kBytesPerRecord = 2500;       // of run.json
 
-constexpr double kMeasured = 0.2;  // wall time of a measurement [s]
+constexpr double kMeasured = 0.4;  // wall time of a measurement [s]
 constexpr std::int64_t kMeasuredSpheres = 10000;
 constexpr double kMeasuredDensity = 0.72;
 

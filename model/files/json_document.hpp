@@ -1,5 +1,5 @@
 #pragma once
-// JSON in and out. Comments (// to the end of the line, /* */) are skipped. Besides, reading is strict and bounded: size, nesting (while parsing), UTF-8, duplicate keys, numbers that no
+// JSON in and out. Reading is strict and bounded: size, nesting (while parsing), UTF-8, duplicate keys, numbers that no
 // double holds, byte order marks and negative zero are refused with file and key in one line. Writing never writes a
 // non-finite number; an undefined quantity (NaN) becomes null.
 
@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxJsonBytes = 64u << 20;  ///< larger documents a
 inline constexpr int kMaxJsonDepth = 32;                 ///< deeper nesting is refused while parsing
 
 enum class JsonSource {
-  user,  ///< 2000.0 and 2e3 count as the integer 2000; -0 is refused
+  user,  ///< 2000.0 and 2e3 count as the integer 2000; -0 is refused; comments (//, /* */) are skipped
   own,   ///< numbers exactly as written by write_json
 };
 
