@@ -126,7 +126,7 @@ Drawing packing_drawing(const dem::ShearPictures& pictures) {
         fixed(along_over_across(after.count), 2), fixed(along_over_across(before.count), 2),
         fixed(along_over_across(after.force), 2), fixed(along_over_across(before.force), 2));
   }
-  drawing.caption = plain(caption);
+  drawing.caption = plain(pictures.note.empty() ? caption : caption + " " + pictures.note);
   return drawing;
 }
 

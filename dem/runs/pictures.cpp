@@ -116,6 +116,7 @@ std::optional<ShearPictures> read_pictures(const fs::path& folder) {
     json.at("particles").get_to(pictures.particles);
     json.at("horizontal").get_to(pictures.horizontal);
     json.at("vertical").get_to(pictures.vertical);
+    pictures.note = json.value("note", "");
     pictures.before = from_json(json.at("before"));
     pictures.after = from_json(json.at("after"));
     return pictures;

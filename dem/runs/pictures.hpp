@@ -21,6 +21,7 @@ struct ShearPictures {
   std::int64_t particles = 0;
   std::string horizontal, vertical;  ///< axes "x", "y", "z": of the fastest extension and compression
   PackingPicture before, after;
+  std::string note = {};  ///< said beneath; of pictures that others have added
 };
 
 /// Of the calibration test of the plan's first seed that shears by D2 in one segment at the middle one of its densities;

@@ -46,8 +46,10 @@ TEST(PackingDrawing, TheCaptionSaysHowManyMoreContactsBearOnTheCompressedAxis) {
   dem::ShearPictures all = pictures();
   for (const std::size_t bin : {7, 8, 9, 10}) all.after.count[bin] = 1.5;
   for (const std::size_t bin : {0, 1, 16, 17}) all.after.force[bin] = 0.5;
+  all.note = "Said beneath.";
   const Drawing drawing = packing_drawing(all);
   const std::string caption = to_plain(drawing.caption);
+  EXPECT_TRUE(caption.ends_with(" Said beneath.")) << caption;
   EXPECT_NE(caption.find("1.50 times as many contacts as along the extended one after shear (1.00 before)"),
             std::string::npos)
       << caption;
