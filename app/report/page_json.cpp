@@ -77,6 +77,14 @@ OrderedJson json_of(const Figure& figure) {
           {"sources", figure.sources}, {"command", figure.command}, {"panels", panels}};
 }
 
+/// Its numbers are those of its source.
+OrderedJson json_of(const Drawing& drawing) {
+  return {{"drawing", drawing.id},
+          {"title", drawing.title},
+          {"caption", to_plain(drawing.caption)},
+          {"sources", drawing.sources}};
+}
+
 OrderedJson json_of(const std::vector<Block>& blocks) {
   OrderedJson list = OrderedJson::array();
   for (const Block& block : blocks) {
