@@ -307,7 +307,8 @@ function svg_of(fig) {
 
 function start_figure(element) {
   const data = element.querySelector('script'), svgs = element.querySelectorAll('svg.p');
-  if (!svgs.length) return;
+  // A drawing has no numbers to point at.
+  if (!data || !svgs.length) return;
   let fig;
   // Numbers are unpacked when a figure is first touched.
   const awake = () => {
