@@ -145,14 +145,32 @@ std::string class_of(const Table& table) {
   return "h" + sha256(headings).substr(0, 8);
 }
 
+/// Whether a phone has no room for it: by its words, which may wrap after a dozen characters.
+bool is_wide(const Table& table) {
+  constexpr std::size_t kWraps = 12, kPhone = 46;  // characters
+  std::size_t width = 0;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    std::size_t longest = 0;
+    for (const auto& row : table.rows) {
+      if (i < row.size() && row[i].bar) return true;
+      if (i < row.size()) longest = std::max(longest, character_count(row[i].text));
+    }
+    width += std::min(longest, kWraps) + 2;
+  }
+  return width > kPhone;
+}
+
 std::string html_of(const Table& table) {
   std::string html = fmt::format("<div class=\"scroll\"{} role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n",
                                  table.id.empty() ? "" : " id=\"" + table.id + "\"", to_html(plain(table.caption)));
-  html += "<table class=\"" + class_of(table) + "\">\n<caption>" + to_html(plain(table.caption));
+  html += "<table class=\"" + class_of(table) + (is_wide(table) ? " cards" : "") + "\">\n<caption>" +
+          to_html(plain(table.caption));
   if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
   html += "</caption>\n<thead><tr>";
   for (const TableColumn& column : table.columns) {
-    html += fmt::format("<th scope=\"col\"{}>{}</th>", cell_class(column.content, 0), to_html(column.heading));
+    const std::string heading = to_html(column.heading);
+    html += heading.empty() ? "<td></td>"
+                            : fmt::format("<th scope=\"col\"{}>{}</th>", cell_class(column.content, 0), heading);
   }
   html += "</tr></thead>\n<tbody>\n";
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -210,7 +228,7 @@ std::size_t most_toggles(const Page& page) {
   return most;
 }
 
-/// On a narrow screen each row of a table is a card, in which the headings stand before their cells: rules that say them.
+/// On a narrow screen each row of a wide table is a card, in which the headings stand before their cells: rules that say them.
 std::string card_style(const Page& page) {
   std::set<std::string> done;
   std::string style = "@media (max-width: 44rem) {\n";
@@ -220,7 +238,8 @@ std::string card_style(const Page& page) {
       std::string heading;
       for (const char c : to_plain(table.columns[i].heading))
         heading += c == '"' || c == '\\' || c == '<' ? fmt::format("\\{:x} ", static_cast<int>(c)) : std::string(1, c);
-      style += fmt::format(".{} td:nth-child({})::before {{ content: \"{}\"; }}\n", class_of(table), i + 1, heading);
+      style +=
+          fmt::format(".cards.{} td:nth-child({})::before {{ content: \"{}\"; }}\n", class_of(table), i + 1, heading);
     }
   });
   return style + "}\n";

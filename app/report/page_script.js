@@ -4,27 +4,19 @@
 'use strict';
 
 const ALPHABET = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
-const CODES = {};
-for (let i = 0; i < 64; ++i) CODES[ALPHABET[i]] = i;
-const UNDEFINED = 262143, LARGEST = 262142;
 
 // [lowest, highest, three characters a value] as page_figure.cpp packs it; null: undefined. Rounded to what three characters hold.
 function unpack([lowest, highest, text], logarithmic) {
-  const step = (highest - lowest) / LARGEST;
-  const decimals = step > 0 ? Math.min(20, Math.max(0, Math.ceil(-Math.log10(step)))) : 20;
-  const values = [];
-  for (let i = 0; i < text.length; i += 3) {
-    const code = CODES[text[i]] << 12 | CODES[text[i + 1]] << 6 | CODES[text[i + 2]];
-    const value = lowest + step * code;
-    values.push(code === UNDEFINED ? null
-      : logarithmic ? +Math.exp(value).toPrecision(5)
-      : step > 0 ? +value.toFixed(decimals) : lowest);
-  }
-  return values;
+  const step = (highest - lowest) / 262142;
+  const decimals = Math.min(20, Math.max(0, Math.ceil(-Math.log10(step))));
+  return (text.match(/.../g) || []).map(three => {
+    const code = [...three].reduce((sum, c) => 64 * sum + ALPHABET.indexOf(c), 0), value = lowest + step * code;
+    return code === 262143 ? null : logarithmic ? +Math.exp(value).toPrecision(5) : step ? +value.toFixed(decimals) : lowest;
+  });
 }
 
 // A number as a reader wants it: five digits, a true minus.
-const say = value => String(+value.toPrecision(5)).replace('-', '\u2212');
+const say = value => String(+value.toPrecision(5)).replace('-', '−');
 
 const fraction = (axis, v) => axis.log ? Math.log(v / axis.from) / Math.log(axis.to / axis.from)
                                        : (v - axis.from) / (axis.to - axis.from);
@@ -32,24 +24,20 @@ const value_at = (axis, f) => axis.log ? axis.from * Math.pow(axis.to / axis.fro
                                        : axis.from + f * (axis.to - axis.from);
 
 // Round values within the axis, [value, label, exponent of ten where the label is one], as axis.cpp makes them.
-function ticks(axis, wanted) {
-  const list = [];
-  const decades = axis.log ? Math.log10(axis.to / axis.from) : 0;
-  if (decades >= 1.5) {
-    const first = Math.ceil(Math.log10(axis.from) - 1e-9), last = Math.floor(Math.log10(axis.to) + 1e-9);
+function ticks({from, to, log}, wanted) {
+  const list = [], floor = Math.floor, minus = text => text.replace('-', '−');
+  if (log && to / from > 30) {
+    const first = Math.ceil(Math.log10(from) - 1e-9), last = floor(Math.log10(to) + 1e-9);
     const stride = Math.max(1, Math.ceil((last - first) / wanted));
-    for (let k = first; k <= last; ++k) {
-      const labelled = (k - first) % stride === 0;
-      list.push([Math.pow(10, k), labelled ? '10' : '', labelled ? String(k).replace('-', '\u2212') : '']);
-    }
+    for (let k = first; k <= last; ++k) list.push([10 ** k, ...(k - first) % stride ? ['', ''] : ['10', minus(String(k))]]);
     return list;
   }
-  const raw = (axis.to - axis.from) / wanted, decade = Math.pow(10, Math.floor(Math.log10(raw))), m = raw / decade;
+  const raw = (to - from) / wanted, decade = 10 ** floor(Math.log10(raw)), m = raw / decade;
   const step = (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10) * decade;
-  const decimals = Math.min(20, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  for (let k = Math.ceil(axis.from / step - 1e-9); k * step <= axis.to + 1e-9 * step; ++k) {
-    const v = k * step;
-    list.push([v, decimals > 5 || Math.abs(v) >= 1e6 ? say(v) : v.toFixed(decimals).replace(/^-(?=.*[1-9])|^-/, s => v < -step / 2 ? '\u2212' : ''), '']);
+  const decimals = Math.max(0, -floor(Math.log10(step) + 1e-9));
+  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; ++k) {
+    const v = k * step || 0;
+    list.push([v, decimals > 5 || Math.abs(v) >= 1e6 ? say(v) : minus(v.toFixed(decimals)), '']);
   }
   return list;
 }
@@ -57,7 +45,7 @@ function ticks(axis, wanted) {
 // The numbers of a figure, one point a line.
 function csv(figure) {
   const quote = text => /[",\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text;
-  const lines = ['panel,series,abscissa,ordinate,x,y,standard error,half width of 95 % band,of a second band'];
+  const lines = ['panel,series,abscissa,ordinate,x,y,standard error,band,second band'];
   for (const panel of figure.panels) {
     for (const s of panel.series) {
       s.x.forEach((x, i) => lines.push([quote(panel.title), quote(s.label), quote(panel.x.label), quote(panel.y.label), x, s.y[i],
@@ -69,10 +57,9 @@ function csv(figure) {
 
 // Order of two cells: numbers ascending, then words; what is empty comes last either way.
 function compare(a, b, descending) {
-  if (a === '' || b === '') return (a === '') - (b === '');
-  const numbers = [typeof a, typeof b].filter(t => t === 'number').length;
-  const order = numbers === 2 ? a - b : numbers === 1 ? (typeof a === 'number' ? -1 : 1) : a.localeCompare(b);
-  return descending ? -order : order;
+  const kind = v => v === '' ? 2 : typeof v === 'number' ? 0 : 1;
+  const order = kind(a) - kind(b) || (kind(a) ? a.localeCompare(b) : a - b);
+  return descending && a !== '' && b !== '' ? -order : order;
 }
 
 // A figure's data with its numbers unpacked.
@@ -99,91 +86,84 @@ if (typeof document === 'undefined') return;
 
 // --- figures ------------------------------------------------------------------------------------------------------------
 
-const make = (tag, attributes, parent) => {
-  const element = document.createElementNS(tag === 'circle' || tag === 'rect' ? 'http://www.w3.org/2000/svg' : 'http://www.w3.org/1999/xhtml', tag);
-  for (const key in attributes) key === 'text' ? element.textContent = attributes[key] : element.setAttribute(key, attributes[key]);
-  if (parent) parent.append(element);
+const make = (tag, attributes, parent, text = '') => {
+  const element = document.createElement(tag);
+  for (const key in attributes) element.setAttribute(key, attributes[key]);
+  element.append(text);
+  parent?.append(element);
   return element;
 };
 const px = (p, v) => p.left + p.width * Math.min(4, Math.max(-3, fraction(p.x, v)));
 const py = (p, v) => p.top + p.height * (1 - Math.min(4, Math.max(-3, fraction(p.y, v))));
-const defined = (axis, v) => v !== null && v !== undefined && isFinite(v) && (!axis.log || v > 0);
-const inside = (axis, v) => { const f = fraction(axis, v); return f > -1e-6 && f < 1 + 1e-6; };
+const defined = (axis, v) => v !== null && isFinite(v) && (!axis.log || v > 0);
+const inside = (axis, v) => Math.abs(fraction(axis, v) - .5) < .5 + 1e-6;
 const at = (x, y) => x.toFixed(1) + ' ' + y.toFixed(1);
 
-// Grid, ticks and numbers anew, then each path of each series, in the order that svg_series.cpp writes them.
+// Grid, ticks and numbers anew, then each path of each series, as svg_series.cpp draws them.
 function redraw(p) {
   let grid = '', marks = '', words = '';
   const bottom = p.top + p.height, right = p.left + p.width;
-  const number = (x, y, anchor, [, label, exponent]) => words += '<text x="' + x + '" y="' + y + '" text-anchor="' + anchor + '">' +
-    label + (exponent ? '<tspan dy="-5" font-size="75%">' + exponent + '</tspan>' : '') + '</text>';
+  const word = (x, y, anchor, [, label, exponent]) => words += `<text x="${x}" y="${y}" text-anchor="${anchor}">${label}` +
+    (exponent && `<tspan dy="-5" font-size="75%">${exponent}</tspan>`) + '</text>';
   for (const tick of ticks(p.x, Math.max(3, Math.floor(p.width / 60)))) {
     const x = px(p, tick[0]).toFixed(1);
-    grid += 'M' + x + ' ' + p.top + 'V' + bottom;
-    marks += 'M' + x + ' ' + bottom + 'v5';
-    number(x, bottom + 18, 'middle', tick);
+    grid += `M${x} ${p.top}V${bottom}`;
+    marks += `M${x} ${bottom}v5`;
+    word(x, bottom + 18, 'middle', tick);
   }
   for (const tick of ticks(p.y, 5)) {
     const y = py(p, tick[0]);
-    grid += 'M' + p.left + ' ' + y.toFixed(1) + 'H' + right;
-    marks += 'M' + p.left + ' ' + y.toFixed(1) + 'h-5';
-    number(p.left - 8, (y + 4).toFixed(1), 'end', tick);
+    grid += `M${at(p.left, y)}H${right}`;
+    marks += `M${at(p.left, y)}h-5`;
+    word(p.left - 8, (y + 4).toFixed(1), 'end', tick);
   }
-  if (p.zero && p.y.from < 0 && p.y.to > 0) marks += 'M' + at(p.left, py(p, 0)) + 'H' + right;
-  p.scale.innerHTML = '<path class="grid" d="' + grid + '"/><path class="axis" d="' + marks + '"/>' + words;
+  if (p.zero && p.y.from < 0 && p.y.to > 0) marks += `M${at(p.left, py(p, 0))}H${right}`;
+  p.scale.innerHTML = `<path class="grid" d="${grid}"/><path class="axis" d="${marks}"/>` + words;
   for (const s of p.series) {
-    const n = s.x.length, shown = i => defined(p.x, s.x[i]) && defined(p.y, s.y[i]);
-    const set = (path, d) => path && path.setAttribute('d', d || 'M0 0');
-    s.paths.b.forEach((path, k) => {
-      let d = '', low = [], high = [];
-      for (let i = 0; i <= n; ++i) {
-        const w = i < n && shown(i) ? s.bands[k][i] : null;
-        if (w !== null && defined(p.y, s.y[i] - w)) {
-          low.push(at(px(p, s.x[i]), py(p, s.y[i] - w)));
-          high.unshift(at(px(p, s.x[i]), py(p, s.y[i] + w)));
-        } else {
-          if (low.length > 1) d += 'M' + low.concat(high).join('L') + 'z';
-          low = [], high = [];
-        }
-      }
-      set(path, d);
-    });
+    const low = s.bands.map(() => []), high = s.bands.map(() => []), shapes = s.bands.map(() => '');
     let line = '', marker = '', bars = '', pen = 'M';
-    for (let i = 0; i < n; ++i) {
-      if (!shown(i)) { pen = 'M'; continue; }
-      const x = px(p, s.x[i]), y = py(p, s.y[i]);
-      line += pen + at(x, y);
+    for (let i = 0; i <= s.x.length; ++i) {
+      const shown = i < s.x.length && defined(p.x, s.x[i]) && defined(p.y, s.y[i]), x = shown && px(p, s.x[i]), v = s.y[i];
+      s.bands.forEach((band, k) => {
+        if (shown && band[i] !== null && defined(p.y, v - band[i])) {
+          low[k].push(at(x, py(p, v - band[i])));
+          high[k].unshift(at(x, py(p, v + band[i])));
+          return;
+        }
+        if (low[k].length > 1) shapes[k] += `M${low[k].concat(high[k]).join('L')}z`;
+        low[k] = [], high[k] = [];
+      });
+      if (!shown) { pen = 'M'; continue; }
+      const place = at(x, py(p, v)), e = s.error?.[i];
+      line += pen + place;
       pen = 'L';
-      if (inside(p.x, s.x[i]) && inside(p.y, s.y[i])) marker += (marker ? 'L' : 'M') + at(x, y);
-      const e = s.error && s.error[i];
-      if (e > 0 && defined(p.y, s.y[i] - e)) {
-        for (const end of [py(p, s.y[i] - e), py(p, s.y[i] + e)]) bars += 'M' + at(x - 2.5, end) + 'h5M' + at(x, y) + 'L' + at(x, end);
-      }
+      if (inside(p.x, s.x[i]) && inside(p.y, v)) marker += (marker ? 'L' : 'M') + place;
+      if (e > 0 && defined(p.y, v - e))
+        for (const end of [py(p, v - e), py(p, v + e)]) bars += `M${at(x - 2.5, end)}h5M${place}L${at(x, end)}`;
     }
-    set(s.paths.l[0], line);
-    set(s.paths.e[0], bars);
-    set(s.paths.m[0], marker && !marker.includes('L') ? marker + 'h0' : marker);
+    const paths = {b: shapes, e: [bars], l: [line], m: [marker.includes('L') ? marker : marker && marker + 'h0']};
+    for (const c in paths) s.paths[c].forEach((path, k) => path.setAttribute('d', paths[c][k]));
   }
 }
 
 // Shows the part `fs` of x and `gs` of y, fractions of what is shown: of panel `p` and of all that have the same axis, or without
 // `p` of every panel. Never more than the whole.
-function zoom(figure, p, fs, gs) {
+function zoom(fig, p, fs, gs) {
   const changes = [];
-  for (const q of figure.panels) {
+  for (const q of fig.panels) {
     for (const [axis, like, part] of [[q.x, (p || q).x, fs], [q.y, (p || q).y, gs]]) {
       if (axis.label === like.label && axis.from === like.from && axis.to === like.to)
         changes.push([axis, Math.max(axis.all[0], value_at(axis, part[0])), Math.min(axis.all[1], value_at(axis, part[1]))]);
     }
   }
   for (const [axis, from, to] of changes) {
-    const whole = {...axis, from: axis.all[0], to: axis.all[1]};
-    if (fraction(whole, to) - fraction(whole, from) > 1e-4) axis.from = from, axis.to = to;
+    const part = v => fraction({...axis, from: axis.all[0], to: axis.all[1]}, v);
+    if (part(to) - part(from) > 1e-4) axis.from = from, axis.to = to;
   }
-  figure.panels.forEach(redraw);
-  unmark(figure);
+  fig.panels.forEach(redraw);
+  unmark(fig);
 }
-const whole = figure => zoom(figure, undefined, [-1e9, 1e9], [-1e9, 1e9]);
+const whole = fig => zoom(fig, undefined, [-1e9, 1e9], [-1e9, 1e9]);
 
 const visible = s => !s.box || s.box.checked;
 const can_show = (p, s, i) => defined(p.x, s.x[i]) && defined(p.y, s.y[i]) && inside(p.x, s.x[i]) && inside(p.y, s.y[i]);
@@ -203,182 +183,169 @@ function nearest(p, x, y, reach) {
 }
 
 function words_of(p, {s, i}) {
-  const unit = label => (label.match(/\[(.*)\]/) || ['', ''])[1].replace('\u2013', '');
-  const name = label => label.replace(/ *\[.*\]/, '');
-  let text = (s.label ? s.label + ': ' : '') + name(p.x.label) + ' ' + say(s.x[i]) + ' ' + unit(p.x.label) + ', ' +
-    name(p.y.label) + ' ' + say(s.y[i]);
-  if (s.error && s.error[i] > 0) text += ' \u00b1 ' + say(s.error[i]);
-  if (s.bands[0] && s.bands[0][i] !== null) text += ', band \u00b1 ' + say(s.bands[0][i]);
-  return (text + ' ' + unit(p.y.label)).replace(/ +(?=,|$)/g, '');
+  const said = (axis, v, more) => {
+    const [, name, unit] = axis.label.match(/^(.*?) *(?:\[(.*)\])?$/);
+    return `${name} ${say(v)}${more}${unit && unit !== '–' ? ' ' + unit : ''}`;
+  };
+  const more = (s.error?.[i] > 0 ? ' ± ' + say(s.error[i]) : '') + (s.bands[0]?.[i] ? ', band ± ' + say(s.bands[0][i]) : '');
+  return `${s.label && s.label + ': '}${said(p.x, s.x[i], '')}, ${said(p.y, s.y[i], more)}`;
 }
 
-let tip;
-function unmark(figure) {
-  if (tip) tip.hidden = true;
-  figure.panels.forEach(p => p.ring.setAttribute('r', 0));
+const tip = make('div', {class: 'tip', 'aria-hidden': true, hidden: ''}, document.body);
+function unmark(fig) {
+  tip.hidden = true;
+  fig.panels.forEach(p => p.over.innerHTML = '');
 }
-function mark(figure, p, point) {
-  unmark(figure);
-  p.ring.setAttribute('r', 7);
-  p.ring.setAttribute('cx', px(p, point.s.x[point.i]));
-  p.ring.setAttribute('cy', py(p, point.s.y[point.i]));
-  tip ||= make('div', {class: 'tip', 'aria-hidden': 'true'}, document.body);
+function mark(fig, p, point) {
+  unmark(fig);
+  const {s, i} = p.point = point;
+  p.over.innerHTML = `<circle class="ring" r="7" cx="${px(p, s.x[i])}" cy="${py(p, s.y[i])}"/>`;
   tip.textContent = words_of(p, point);
   tip.hidden = false;
-  const ring = p.ring.getBoundingClientRect(), room = document.documentElement.clientWidth - tip.offsetWidth - 4;
-  tip.style.left = Math.max(4, Math.min(room, ring.left + 14)) + scrollX + 'px';
+  const ring = p.over.getBoundingClientRect(), room = document.body.clientWidth - tip.offsetWidth;
+  tip.style.left = Math.max(4, Math.min(room, ring.left + 14)) + 'px';
   tip.style.top = ring.top + scrollY - tip.offsetHeight - 4 + 'px';
 }
 
 // Arrows go along a series and from one to the next, + and - zoom about the point, Escape shows the whole range.
-function press(figure, p, event) {
-  const list = p.series.filter(s => visible(s) && s.x.some((_, i) => can_show(p, s, i)));
-  if (event.key === 'Escape' || event.key === '0') whole(figure);
-  else if ((event.key === '+' || event.key === '=' || event.key === '-') && !event.ctrlKey) {
-    const f = p.point ? fraction(p.x, p.point.s.x[p.point.i]) : .5, g = p.point ? fraction(p.y, p.point.s.y[p.point.i]) : .5;
-    const h = event.key === '-' ? 1 : .25;
-    zoom(figure, p, [f - h, f + h], [g - h, g + h]);
-    figure.readout.textContent = 'Shown: ' + say(p.x.from) + ' to ' + say(p.x.to) + ' and ' + say(p.y.from) + ' to ' + say(p.y.to);
-  } else if (/^(Arrow|Home|End)/.test(event.key) && list.length) {
-    let {s, i} = p.point && list.includes(p.point.s) ? p.point : {s: list[0], i: -1};
-    const step = event.shiftKey ? 10 : 1;
-    const go = (from, by) => {
-      for (let k = from; k >= 0 && k < s.x.length; k += by) if (can_show(p, s, k)) return k;
-      return i >= 0 && can_show(p, s, i) ? i : s.x.findIndex((_, k) => can_show(p, s, k));
-    };
-    if (event.key === 'ArrowRight') i = go(i + step, 1);
-    else if (event.key === 'ArrowLeft') i = go(i - step, -1);
-    else if (event.key === 'Home') i = go(0, 1);
-    else if (event.key === 'End') i = go(s.x.length - 1, -1);
-    else {
-      const x = s.x[i], next = list.indexOf(s) + (event.key === 'ArrowUp' ? -1 : 1);
-      s = list[(next + list.length) % list.length];
-      i = s.x.reduce((best, v, k) => can_show(p, s, k) && (best < 0 || Math.abs(v - x) < Math.abs(s.x[best] - x)) ? k : best, -1);
+function press(fig, p, event) {
+  const key = event.key, points = s => s.x.map((_, i) => i).filter(i => can_show(p, s, i));
+  const list = p.series.filter(s => visible(s) && points(s).length);
+  let {s, i} = list.includes(p.point?.s) ? p.point : {s: list[0]};
+  let said = '';
+  if (key === 'Escape') {
+    whole(fig);
+  } else if (/^[-+=]$/.test(key) && !event.ctrlKey) {
+    const about = (f, h = key === '-' ? 1 : .25) => [f - h, f + h];
+    zoom(fig, p, about(i >= 0 ? fraction(p.x, s.x[i]) : .5), about(i >= 0 ? fraction(p.y, s.y[i]) : .5));
+    said = 'Shown: ' + [p.x, p.y].map(axis => say(axis.from) + ' to ' + say(axis.to)).join(', ');
+  } else if (/^(Arrow|Home|End)/.test(key) && s) {
+    const shown = points(s), place = shown.indexOf(i), step = event.shiftKey ? 10 : 1;
+    const next = {ArrowRight: place + step, ArrowLeft: place - step, Home: 0, End: 1e9}[key];
+    if (next === undefined) {
+      const x = s.x[i];
+      s = list[(list.indexOf(s) + (key === 'ArrowUp' ? -1 : 1) + list.length) % list.length];
+      i = points(s).reduce((a, b) => Math.abs(s.x[b] - x) < Math.abs(s.x[a] - x) ? b : a);
+    } else {
+      i = shown[Math.max(0, Math.min(shown.length - 1, next))];
     }
-    p.point = {s, i};
-    mark(figure, p, p.point);
-    figure.readout.textContent = words_of(p, p.point);
-  } else return;
+    mark(fig, p, {s, i});
+    said = words_of(p, p.point);
+  } else {
+    return;
+  }
+  fig.readout.textContent = said;
   event.preventDefault();
 }
 
-function watch(figure, p) {
-  let from, box;
-  const place = event => {
-    const r = p.svg.getBoundingClientRect(), view = p.svg.viewBox.baseVal;
-    return [(event.clientX - r.left) * view.width / r.width, (event.clientY - r.top) * view.height / r.height];
+function watch(fig, p) {
+  const on = (type, act) => p.svg.addEventListener(type, act);
+  let from, box = false;
+  const place = e => {
+    const {x, y} = new DOMPoint(e.clientX, e.clientY).matrixTransform(p.svg.getScreenCTM().inverse());
+    return [x, y];
   };
-  const end = () => { if (box) box.remove(); from = box = undefined; };
-  p.svg.addEventListener('pointerdown', event => {
-    if (event.button === 0 && event.pointerType === 'mouse') from = place(event), event.preventDefault(), p.svg.focus({preventScroll: true});
+  const end = () => { from = box = false; unmark(fig); };
+  on('pointerdown', e => {
+    if (e.button || e.pointerType !== 'mouse') return;
+    from = place(e);
+    e.preventDefault();
+    p.svg.focus({preventScroll: true});
   });
-  p.svg.addEventListener('pointermove', event => {
-    const [x, y] = place(event);
-    if (from && Math.hypot(x - from[0], y - from[1]) > 5) {
-      box ||= make('rect', {class: 'box'}, p.svg);
-      const sides = {x: Math.min(x, from[0]), y: Math.min(y, from[1]), width: Math.abs(x - from[0]), height: Math.abs(y - from[1])};
-      for (const key in sides) box.setAttribute(key, sides[key]);
-      return unmark(figure);
+  on('pointermove', e => {
+    const [x, y] = place(e);
+    if (box ||= from && Math.hypot(x - from[0], y - from[1]) > 5) {
+      unmark(fig);
+      p.over.innerHTML = `<path class="box" d="M${from}H${x}V${y}H${from[0]}z"/>`;
+      return;
     }
     const point = nearest(p, x, y, 30);
-    point ? mark(figure, p, p.point = point) : unmark(figure);
+    point ? mark(fig, p, point) : unmark(fig);
   });
-  p.svg.addEventListener('pointerup', event => {
-    if (from && box) {
-      const clamp = f => Math.min(1, Math.max(0, f));
-      const [x, y] = place(event);
-      const f = [from[0], x].map(v => clamp((v - p.left) / p.width)).sort((a, b) => a - b);
-      const g = [from[1], y].map(v => clamp(1 - (v - p.top) / p.height)).sort((a, b) => a - b);
-      if (f[1] - f[0] > .01 && g[1] - g[0] > .01) zoom(figure, p, f, g);
+  on('pointerup', e => {
+    const part = (a, b) => a < b ? [a, b] : [b, a];
+    if (box) {
+      const [x, y] = place(e), f = v => (v - p.left) / p.width, g = v => 1 - (v - p.top) / p.height;
+      zoom(fig, p, part(f(x), f(from[0])), part(g(y), g(from[1])));
     }
     end();
   });
-  p.svg.addEventListener('pointerleave', () => { end(); unmark(figure); });
-  p.svg.addEventListener('dblclick', () => whole(figure));
-  p.svg.addEventListener('keydown', event => press(figure, p, event));
-  p.svg.addEventListener('blur', () => unmark(figure));
+  on('pointerleave', end);
+  on('dblclick', () => whole(fig));
+  on('keydown', e => press(fig, p, e));
+  on('blur', end);
 }
 
 const save = (name, type, text) => {
   const link = make('a', {download: name, href: URL.createObjectURL(new Blob([text], {type}))});
   link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1e4);
 };
 
 // The figure as one file, as it is shown now: legend above, panels in their columns.
-function svg_of(figure) {
-  const {width, height} = figure.panels[0].svg.viewBox.baseVal, total = width * figure.columns;
-  let x = 10, y = 14, legend = '';
-  for (const entry of figure.element.querySelectorAll('.legend > :not(.toggles)')) {
-    const box = entry.querySelector('input'), key = entry.querySelector('svg > g');
-    if (box && !box.checked || !entry.getClientRects().length || !key) continue;
-    const taken = 52 + 6.6 * entry.textContent.trim().length;
+function svg_of(fig) {
+  const {width, height} = fig.panels[0].svg.viewBox.baseVal, total = width * fig.columns;
+  const plain = text => text.replace(/[<&]/g, '');
+  let x = 10, y = 14, out = '';
+  for (const entry of fig.element.querySelectorAll('.legend > :not(.toggles)')) {
+    if (entry.querySelector('input:not(:checked)') || !entry.getClientRects().length) continue;
+    const text = entry.textContent.trim(), taken = 52 + 6.6 * text.length;
     if (x > 10 && x + taken > total) x = 10, y += 20;
-    const text = make('rect', {});
-    text.append(entry.textContent.trim());
-    legend += '<g transform="translate(' + x + ' ' + (y - 12) + ')">' + key.outerHTML + '</g><text x="' + (x + 30) + '" y="' + y + '">' +
-      text.innerHTML + '</text>';
+    out += `<g transform="translate(${x} ${y - 12})">${entry.querySelector('svg > g').outerHTML}</g><text x="${x + 30}" y="${y}">${plain(text)}</text>`;
     x += taken;
   }
-  const top = legend ? y + 10 : 0;
-  const panels = figure.panels.map((p, i) => {
+  const top = out ? y + 10 : 0;
+  fig.panels.forEach((p, i) => {
     const copy = p.svg.cloneNode(true);
-    copy.querySelectorAll('.ring').forEach(e => e.remove());
-    p.series.forEach((s, k) => visible(s) || copy.querySelectorAll('g.s')[k].classList.add('away'));
-    copy.querySelectorAll('.away').forEach(e => e.remove());
-    for (const a of ['tabindex', 'role', 'aria-roledescription']) copy.removeAttribute(a);
-    const sides = {x: i % figure.columns * width, y: top + Math.floor(i / figure.columns) * height, width, height};
-    for (const key in sides) copy.setAttribute(key, sides[key]);
-    return new XMLSerializer().serializeToString(copy);
+    copy.setAttribute('width', width);
+    copy.setAttribute('height', height);
+    copy.querySelectorAll('g.s').forEach((g, k) => visible(p.series[k]) || g.remove());
+    out += `<g transform="translate(${i % fig.columns * width} ${top + Math.floor(i / fig.columns) * height})">${new XMLSerializer().serializeToString(copy)}</g>`;
   });
-  return '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ' + total + ' ' + (top + height * Math.ceil(panels.length / figure.columns)) +
-    '"><style>' + document.querySelector('style').textContent.replace(/[<&]/g, '') + 'svg{background:var(--ground)}</style><title>' + figure.title.replace(/[<&]/g, '') + '</title>' + legend + panels.join('') + '</svg>\n';
+  return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${total} ${top + height * Math.ceil(fig.panels.length / fig.columns)}">` +
+    `<title>${plain(fig.title)}</title><style>${plain(document.querySelector('style').textContent)}svg{background:var(--ground)}</style>${out}</svg>\n`;
 }
 
 function start_figure(element) {
-  const data = element.querySelector('script');
-  if (!data) return;
-  const svgs = element.querySelectorAll('svg.p');
+  const data = element.querySelector('script'), svgs = element.querySelectorAll('svg.p');
   if (!svgs.length) return;
-  let figure;
+  let fig;
   // Numbers are unpacked when a figure is first touched.
   const awake = () => {
-    if (figure) return figure;
-    figure = read_figure(JSON.parse(data.textContent));
-    figure.element = element;
-    figure.readout = readout;
-    figure.panels.forEach((p, i) => {
+    if (fig) return fig;
+    fig = read_figure(JSON.parse(data.textContent));
+    Object.assign(fig, {element, readout});
+    fig.panels.forEach((p, i) => {
       p.svg = svgs[i];
       p.scale = p.svg.querySelector('g.a');
-      const frame = p.svg.querySelector('rect.axis');
-      for (const key of ['x', 'y', 'width', 'height']) p[{x: 'left', y: 'top'}[key] || key] = +frame.getAttribute(key);
+      const {x, y, width, height} = p.svg.querySelector('rect.axis').getBBox();
+      Object.assign(p, {left: x, top: y, width, height});
       p.svg.querySelectorAll('g.s').forEach((g, k) => {
         const s = p.series[k];
-        s.paths = {b: [...g.querySelectorAll('.b')]};
-        for (const c of 'elm') s.paths[c] = [...g.querySelectorAll('.' + c)];
-        s.box = s.toggle === undefined ? null : element.querySelector('.c' + s.toggle);
-        g.querySelector('title')?.remove();
+        s.paths = {};
+        for (const c of 'belm') s.paths[c] = g.querySelectorAll('.' + c);
+        s.box = element.querySelector('.c' + s.toggle);
+        g.querySelector('title').remove();
       });
-      p.ring = make('circle', {class: 'ring', r: 0}, p.svg);
-      watch(figure, p);
+      p.svg.insertAdjacentHTML('beforeend', '<g></g>');
+      p.over = p.svg.lastChild;
+      watch(fig, p);
     });
-    return figure;
+    return fig;
   };
-  const tools = make('div', {class: 'tools'});
-  const readout = make('output', {class: 'readout', 'aria-live': 'polite'});
+  const tools = make('div', {class: 'tools'}), readout = make('output', {class: 'readout', 'aria-live': 'polite'});
   element.querySelector('figcaption').before(tools);
-  const button = (text, label, act) => make('button', {type: 'button', text, 'aria-label': label + ' of ' + element.id}, tools)
+  const button = (text, act) => make('button', {type: 'button', 'aria-label': `${text}, ${element.id}`}, tools, text)
     .addEventListener('click', () => act(awake()));
-  button('+', 'Zoom into the middle', f => zoom(f, undefined, [.25, .75], [.25, .75]));
-  button('\u2212', 'Zoom out', f => zoom(f, undefined, [-.5, 1.5], [-.5, 1.5]));
-  button('Whole range', 'Whole range', whole);
-  button('CSV', 'Numbers', f => save(element.id + '.csv', 'text/csv', csv(f)));
-  button('SVG', 'Drawing', f => save(element.id + '.svg', 'image/svg+xml', svg_of(f)));
+  button('Zoom in', f => zoom(f, undefined, [.25, .75], [.25, .75]));
+  button('Zoom out', f => zoom(f, undefined, [-.5, 1.5], [-.5, 1.5]));
+  button('Whole', whole);
+  button('CSV', f => save(element.id + '.csv', 'text/csv', csv(f)));
+  button('SVG', f => save(element.id + '.svg', 'image/svg+xml', svg_of(f)));
   tools.append(readout);
   svgs.forEach(svg => {
-    svg.setAttribute('tabindex', '0');
+    svg.setAttribute('tabindex', 0);
     svg.setAttribute('role', 'application');
-    svg.setAttribute('aria-roledescription', 'figure with points; arrow keys read them, plus and minus zoom, Escape shows all');
+    svg.setAttribute('aria-roledescription', 'points; arrow keys read them, plus and minus zoom, Escape ends it');
     for (const type of ['pointerenter', 'focus']) svg.addEventListener(type, awake, {once: true});
   });
 }
@@ -389,10 +356,11 @@ function start_table(table) {
   const body = table.tBodies[0], heads = [...table.tHead.rows[0].cells];
   if (body.rows.length < 3) return;
   const key = (row, column) => {
-    const cell = row.cells[column];
-    return cell.dataset.value !== undefined ? +cell.dataset.value : cell.textContent.trim();
+    const cell = row.cells[column], value = cell.dataset.value ?? cell.textContent.trim().replace('−', '-');
+    return value === '' || isNaN(value) ? value : +value;
   };
   heads.forEach((head, column) => {
+    if (!head.textContent) return;
     const button = make('button', {type: 'button', class: 'sort'});
     button.append(...head.childNodes);
     head.append(button);
@@ -412,9 +380,8 @@ function start_table(table) {
 
 function unfold() {
   const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
-  let opened = false;
-  for (let e = target; e; e = e.parentElement) if (e.tagName === 'DETAILS' && !e.open) opened = e.open = true;
-  if (opened) target.scrollIntoView();
+  for (let e = target; e; e = e.parentElement) if (e.tagName === 'DETAILS') e.open = true;
+  target?.scrollIntoView();
 }
 
 document.querySelectorAll('figure').forEach(start_figure);

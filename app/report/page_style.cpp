@@ -36,12 +36,12 @@ details { margin: 1rem 0; }
 summary { cursor: pointer; font-weight: 600; }
 .scroll { overflow-x: auto; }
 .unseen { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); margin: 0; }
-.anchor { text-decoration: none; color: var(--quiet); font-weight: 400; }
+.anchor { color: var(--quiet); font-weight: 400; }
 .panels { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, var(--least)), 1fr)); }
 .columns1 { --least: 34rem; } .columns2 { --least: 25rem; } .columns3 { --least: 17.5rem; } .columns4 { --least: 14rem; }
 .columns5, .columns6 { --least: 12rem; }
 svg { font: 12px system-ui, "DejaVu Sans", sans-serif; }
-svg.p { display: block; width: 100%; max-width: 40rem; height: auto; }
+.panels > svg { display: block; width: 100%; max-width: 40rem; height: auto; }
 svg.p:focus-visible { outline: 2px solid var(--link); }
 svg text { fill: var(--text); }
 svg .title { font-weight: 600; }
@@ -75,19 +75,22 @@ tbody tr:nth-child(even) { background: var(--band); }
 .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .symbol { white-space: nowrap; }
 sub, sup { line-height: 0; font-size: 75%; }
-/* @media narrow: each row is a card; what stands before its cells is told for each table */
+/* narrow: each row of a wide table is a card; what stands before its cells is told for each table */
 @media (max-width: 44rem) {
   nav ol { columns: 1; }
-  table, caption, tbody, tr, th, td { display: block; }
-  thead { position: absolute; clip-path: inset(50%); width: 1px; height: 1px; overflow: hidden; }
-  tbody tr { padding: .4rem 0; }
-  tbody th { font-weight: 600; text-align: left; white-space: normal; }
-  td { display: flex; justify-content: space-between; gap: 1rem; text-align: right; }
-  td::before { color: var(--quiet); text-align: left; }
-  td.number { white-space: normal; }
-  td:empty { display: none; }
-  tr.note td { display: block; text-align: left; }
-  tr.note td::before { content: none !important; }
+  table { font-size: .8rem; }
+  th, td { padding: .2rem .3rem; }
+  .number, .symbol { white-space: normal; }
+  .cards, .cards caption, .cards tbody { display: block; }
+  .cards thead { position: absolute; clip-path: inset(50%); width: 1px; height: 1px; overflow: hidden; }
+  .cards tbody tr { display: grid; grid-template-columns: 1fr 1fr; column-gap: 1rem; padding: .4rem 0; }
+  .cards tbody th, .cards .long, .cards .note td { grid-column: 1 / 3; text-align: left; }
+  .cards tbody th { font-weight: 600; }
+  .cards td { display: flex; flex-wrap: wrap; justify-content: space-between; column-gap: .5rem; }
+  .cards td::before { color: var(--quiet); }
+  .cards td:empty { display: none; }
+  .cards .note td::before { content: none !important; }
+  .cards [class*=heat]::before { color: inherit; }
   .columns1 svg.p, .columns2 svg.p { font-size: 14px; }
   .long { min-width: 0; }
 }
