@@ -98,10 +98,14 @@ sub, sup { line-height: 0; font-size: 75%; }
     --ground: #ffffff; --text: #000000; --quiet: #444444; --rule: #bbbbbb; --grid: #e8e8e8; --band: #ffffff; --link: #000000;
     --k0: #000000; --k1: #0072b2; --k2: #d55e00; --k3: #009e73; --k4: #b2578f; --k5: #c98a00; --k6: #3a9bd3;
   }
-  html { font-size: 10pt; }
+  @page { margin: 11mm; }
+  html { font-size: 9pt; line-height: 1.35; }
   body { max-width: none; padding: 0; }
-  h2 { margin-top: 1rem; } figure { margin: .5rem 0 .75rem; } figcaption { font-size: .8rem; }
-  .columns1, .columns2 { --least: 44%; } .columns3 { --least: 30%; } .columns4, .columns5, .columns6 { --least: 22%; }
+  p, ul { margin: .4rem 0; max-width: none; } table { margin: .4rem 0 .8rem; } details { margin: .3rem 0; }
+  th, td { padding: .08rem .4rem; }
+  h2 { margin: .8rem 0 .3rem; padding-top: .3rem; }
+  figure { margin: .4rem 0 .6rem; } figcaption { max-width: none; font-size: .85rem; margin: 0; }
+  .columns1, .columns2 { --least: 44%; } .columns3 { --least: 30%; } .columns4, .columns5, .columns6 { --least: 16.5%; }
   .scroll { overflow: visible; }
   nav, .anchor, .tools, .tip, .toggles, .legend input, .legend label:has(input:not(:checked)) { display: none; }
   .sort::after { content: none !important; }

@@ -201,7 +201,8 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   for (const Reservation& reason : reservations(input, errors)) reasons.push_back(reason.words);
   page.sections.back().blocks.push_back(folded("All reasons for distrust, weightiest first", Items{reasons}));
   add("provenance", "Provenance and cost",
-      {text(kReading), open(cost_table(input)), folded("Commands, versions and digests", provenance_table(input)),
+      {text(kReading), open(cost_table(input)),
+       folded("Files, commands, versions and seconds", provenance_table(input)),
        folded("The resolved spec", spec_table(input)), folded("All runs", run_table(input))});
   return page;
 }
