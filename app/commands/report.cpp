@@ -1,8 +1,9 @@
-// grainlaw report DIR -o report.html: one page about a calibration and its predictions.
+// grainlaw report DIR -o report.html: one page about a calibration and its predictions; --json: its numbers.
 
 #include "app/report/report.hpp"
 #include "app/commands/commands.hpp"
 #include "model/files/json_document.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 
@@ -10,11 +11,13 @@ Task declare_report(CLI::App& command) {
   const auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>(),
              other = std::make_shared<std::filesystem::path>();
   command.add_option("DIR", *folder, "folder of a calibration")->required();
-  command.add_option("-o,--output", *html, "file of the page, e.g. report.html")->required();
+  command.add_option("-o,--output", *html, "file of the page, e.g. report.html; not needed with --json");
   command.add_option("--compare", *other, "folder of another calibration, set beside this one");
   return [folder, html, other](Session& session) {
-    write_report(*folder, *html, *other);
-    print_result(session.json ? json_text({{"report", html->string()}})
+    if (html->empty() && !session.json)
+      throw InvalidInput("report: -o FILE is missing, the page's file; or --json for its numbers on standard output");
+    if (!html->empty()) write_report(*folder, *html, *other);
+    print_result(session.json ? json_text(report_json(*folder, *other))
                               : summary_table(*folder) + "\n" + html->string() + "\n");
     return ExitCode::ok;
   };

@@ -7,6 +7,7 @@
 
 #include "app/report/figure.hpp"
 #include "app/report/table.hpp"
+#include "model/files/json_document.hpp"
 
 namespace grainlaw::app::report {
 
@@ -52,8 +53,13 @@ struct Page {
   std::vector<Section> sections;
 };
 
-/// A figure comes with caption, sources, count of points not drawn, and its numbers as JSON for scripts to come.
+/// A figure comes with legend, caption, sources, count of points not drawn, and its numbers for the page's one script, which the
+/// page's security policy names by its digest; nothing else may run.
 std::string page_html(const Page& page);
+
+/// All that stands on the page, with every number before rounding: of tables by rows with the columns' units, of figures by
+/// panels and series.
+OrderedJson page_json(const Page& page);
 
 /// The style sheet: light, dark and print; and that of tiles, heat maps and bars, which no figure needs.
 const char* page_style();

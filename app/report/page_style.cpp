@@ -105,7 +105,7 @@ sub, sup { line-height: 0; font-size: 75%; }
   th, td { padding: .08rem .4rem; }
   h2 { margin: .8rem 0 .3rem; padding-top: .3rem; }
   figure { margin: .4rem 0 .6rem; } figcaption { max-width: none; font-size: .85rem; margin: 0; }
-  .columns1, .columns2 { --least: 44%; } .columns3 { --least: 30%; } .columns4, .columns5, .columns6 { --least: 16.5%; }
+  .columns1, .columns2 { --least: 44%; } .columns3 { --least: 30%; } .columns4, .columns5, .columns6 { --least: 21%; }
   .scroll { overflow: visible; }
   nav, .anchor, .tools, .tip, .toggles, .legend input, .legend label:has(input:not(:checked)) { display: none; }
   .sort::after { content: none !important; }

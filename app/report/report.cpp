@@ -207,15 +207,23 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   return page;
 }
 
+Page page_about(const std::filesystem::path& dir, const std::filesystem::path& compare) {
+  const chain::ReportInput input = chain::read_report_input(dir);
+  std::optional<chain::ReportInput> other;
+  if (!compare.empty()) other = chain::read_report_input(compare);
+  return make_page(input, other ? &*other : nullptr, compare.string());
+}
+
 }  // namespace
 }  // namespace report
 
 void write_report(const std::filesystem::path& dir, const std::filesystem::path& html,
                   const std::filesystem::path& compare) {
-  const chain::ReportInput input = chain::read_report_input(dir);
-  std::optional<chain::ReportInput> other;
-  if (!compare.empty()) other = chain::read_report_input(compare);
-  write_durably(html, report::page_html(report::make_page(input, other ? &*other : nullptr, compare.string())));
+  write_durably(html, report::page_html(report::page_about(dir, compare)));
+}
+
+OrderedJson report_json(const std::filesystem::path& dir, const std::filesystem::path& compare) {
+  return report::page_json(report::page_about(dir, compare));
 }
 
 std::string summary_table(const std::filesystem::path& dir) {
