@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <set>
 
 #include "app/report/series.hpp"
 #include "app/report/tables.hpp"
 #include "fit/leave_one_out.hpp"
-#include "model/files/path_json.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -101,7 +101,8 @@ Tile cost_tile(const ReportInput& input) {
   const std::string fit = fact_of(input, "seconds", "parameters.json");
   return {plain("cost"), plain(duration(seconds)),
           fmt::format("of DEM on one thread, {} billion particle-steps{}", significant(steps / 1e9, 3),
-                      fit.empty() ? "" : "; the last calibrate took " + duration(std::strtod(fit.c_str(), nullptr)))};
+                      fit.empty() ? "" : "; the last calibrate took " + duration(std::strtod(fit.c_str(), nullptr))),
+          seconds};
 }
 
 Tiles error_tiles(const ReportInput& input, const std::vector<PathError>& errors) {
@@ -121,7 +122,8 @@ Tiles error_tiles(const ReportInput& input, const std::vector<PathError>& errors
       note += fmt::format("{}all {} paths: {}", note.empty() ? "" : "; ", all,
                           error_text(recommended_over(errors, quantity, any)));
     tiles.tiles.push_back({plain(std::string(kNames[i]) + " ") + notation(kSymbols[i]),
-                           plain(over.paths > 0 ? percent(over.rms) + " %" : kNoNumber), note});
+                           plain(over.paths > 0 ? percent(over.rms) + " %" : kNoNumber), note,
+                           over.paths > 0 ? 100 * over.rms : kUndefined});
   }
   tiles.tiles.push_back(cost_tile(input));
   return tiles;

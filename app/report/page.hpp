@@ -21,7 +21,8 @@ struct Paragraph {
 /// The few numbers that are read first, side by side.
 struct Tile {
   Text label, value;
-  std::string note;  ///< small, beneath
+  std::string note;            ///< small, beneath
+  double number = kUndefined;  ///< before rounding, in the unit of the value
 };
 struct Tiles {
   std::string caption;  ///< what they are, for all
