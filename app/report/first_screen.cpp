@@ -194,6 +194,20 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
          "What the law itself has wrong is in no band, as no path was rehearsed; grainlaw predict with --rehearse "
          "keeps a path's runs for that.",
          "predictions"});
+  const auto& rehearsals = input.calibration.law.rehearsals;
+  const auto known_packings = std::ranges::count_if(rehearsals, [](const Rehearsal& rehearsal) {
+    // nothing is taken off for chance where packings are those of the fit (docs/theory/bands.md)
+    return !rehearsal.rungs.empty() && rehearsal.rungs.front().P_star.rows > 0 &&
+           rehearsal.rungs.front().P_star.known == 0;
+  });
+  if (known_packings > 0)
+    all.push_back(
+        {47,
+         fmt::format(
+             "{} of {} rehearsals ran on packings whose other tests were fitted: along these the law looks better "
+             "than on new packings.",
+             known_packings, rehearsals.size()),
+         "predictions"});
   const PathError *worst = nullptr, *least_held = nullptr;
   std::size_t worst_of = 0, held_of = 0;
   for (const PathError& entry : errors) {

@@ -84,13 +84,6 @@ std::string html_of(const Tiles& tiles) {
   return html + "</dl>";
 }
 
-std::string html_of(const Warning& warning) {
-  std::string html = "<p class=\"warning\">" + to_html(plain(warning.text));
-  if (!warning.section.empty())
-    html += "<a href=\"#" + warning.section + "\">" + to_html(plain(warning.link)) + "</a>.";
-  return html + "</p>";
-}
-
 std::string html_of(const Items& items) {
   std::string html = "<ul>\n";
   for (std::size_t i = 0; i < items.lines.size(); ++i) {

@@ -28,19 +28,12 @@ struct Tiles {
   std::vector<Tile> tiles;
 };
 
-/// Set apart from the text; may end with a link to a section of the page.
-struct Warning {
-  std::string text;
-  std::string section = {};  ///< id; empty: no link
-  std::string link = {};     ///< words of the link
-};
-
 struct Items {
   std::vector<std::string> lines;
   std::vector<std::string> sections = {};  ///< of each line the id that it links to, empty: none; may be none at all
 };
 
-using BlockContent = std::variant<Paragraph, Tiles, Warning, Items, Table, Figure>;
+using BlockContent = std::variant<Paragraph, Tiles, Items, Table, Figure>;
 
 /// What stands together; with a summary it is folded under these words.
 struct Block {

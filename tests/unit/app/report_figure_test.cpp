@@ -249,7 +249,7 @@ TEST(ReportFigure, HostileLabelsAndNamesStayText) {
   const Tiles tiles{hostile, {{plain(hostile), plain(hostile), hostile}}};
   Page page;
   page.title = hostile;
-  page.lead = {{{Paragraph{plain(hostile)}, Warning{hostile, "s", hostile}}}};
+  page.lead = {{{Paragraph{plain(hostile)}}}};
   page.sections = {{"s", hostile, {{{figure, table, tiles}, hostile}, {{Items{{hostile}, {"s"}}}}}}};
   const std::string html = page_html(page);
   EXPECT_EQ(test::first_markup_error(html), "");
