@@ -77,9 +77,10 @@ TEST(ReportPage, ItsNumbersAreToBeHadAsTheyAre) {
   series.toggle = "t";
   panel.series = {series};
   figure.panels = {panel};
-  const OrderedJson json =
-      page_json({"title", {{{Warning{"careful"}}}}, {{"s", "heading", {{{table, figure}, "folded"}}}}});
-  EXPECT_EQ(json["lead"][0]["warning"], "careful");
+  const OrderedJson json = page_json({"title",
+                                      {{{Tiles{"in short", {{plain("P"), plain("1 %"), "", 1.25}}}}}},
+                                      {{"s", "heading", {{{table, figure}, "folded"}}}}});
+  EXPECT_EQ(json["lead"][0]["tiles"][0]["value"], 1.25);
   const auto& contents = json["sections"][0]["contents"];
   EXPECT_EQ(contents[0]["columns"][0]["name"], "x");
   EXPECT_EQ(contents[0]["columns"][0]["unit"], "kg");
