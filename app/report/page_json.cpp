@@ -23,12 +23,6 @@ OrderedJson labelled(const Text& label) {
 OrderedJson json_of(const Paragraph& paragraph) { return {{"paragraph", to_plain(paragraph.text)}}; }
 OrderedJson json_of(const Items& items) { return {{"items", items.lines}}; }
 
-OrderedJson json_of(const Warning& warning) {
-  OrderedJson json{{"warning", warning.text}};
-  if (!warning.section.empty()) json["section"] = warning.section;
-  return json;
-}
-
 OrderedJson json_of(const Tiles& tiles) {
   OrderedJson list = OrderedJson::array();
   for (const Tile& tile : tiles.tiles)

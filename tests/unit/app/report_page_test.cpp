@@ -78,8 +78,8 @@ TEST(ReportPage, ItsNumbersAreToBeHadAsTheyAre) {
   panel.series = {series};
   figure.panels = {panel};
   const OrderedJson json =
-      page_json({"title", {{{Warning{"careful"}}}}, {{"s", "heading", {{{table, figure}, "folded"}}}}});
-  EXPECT_EQ(json["lead"][0]["warning"], "careful");
+      page_json({"title", {{{Paragraph{plain("careful")}}}}, {{"s", "heading", {{{table, figure}, "folded"}}}}});
+  EXPECT_EQ(json["lead"][0]["paragraph"], "careful");
   const auto& contents = json["sections"][0]["contents"];
   EXPECT_EQ(contents[0]["columns"][0]["name"], "x");
   EXPECT_EQ(contents[0]["columns"][0]["unit"], "kg");
