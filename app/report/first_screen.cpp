@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <set>
 
 #include "app/report/series.hpp"
 #include "app/report/tables.hpp"
 #include "fit/leave_one_out.hpp"
-#include "model/files/path_json.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -101,7 +101,8 @@ Tile cost_tile(const ReportInput& input) {
   const std::string fit = fact_of(input, "seconds", "parameters.json");
   return {plain("cost"), plain(duration(seconds)),
           fmt::format("of DEM on one thread, {} billion particle-steps{}", significant(steps / 1e9, 3),
-                      fit.empty() ? "" : "; the last calibrate took " + duration(std::strtod(fit.c_str(), nullptr)))};
+                      fit.empty() ? "" : "; the last calibrate took " + duration(std::strtod(fit.c_str(), nullptr))),
+          seconds};
 }
 
 Tiles error_tiles(const ReportInput& input, const std::vector<PathError>& errors) {
@@ -121,7 +122,8 @@ Tiles error_tiles(const ReportInput& input, const std::vector<PathError>& errors
       note += fmt::format("{}all {} paths: {}", note.empty() ? "" : "; ", all,
                           error_text(recommended_over(errors, quantity, any)));
     tiles.tiles.push_back({plain(std::string(kNames[i]) + " ") + notation(kSymbols[i]),
-                           plain(over.paths > 0 ? percent(over.rms) + " %" : kNoNumber), note});
+                           plain(over.paths > 0 ? percent(over.rms) + " %" : kNoNumber), note,
+                           over.paths > 0 ? 100 * over.rms : kUndefined});
   }
   tiles.tiles.push_back(cost_tile(input));
   return tiles;
@@ -193,6 +195,20 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
         {62,
          "What the law itself has wrong is in no band, as no path was rehearsed; grainlaw predict with --rehearse "
          "keeps a path's runs for that.",
+         "predictions"});
+  const auto& rehearsals = input.calibration.law.rehearsals;
+  const auto known_packings = std::ranges::count_if(rehearsals, [](const Rehearsal& rehearsal) {
+    // nothing is taken off for chance where packings are those of the fit (docs/theory/bands.md)
+    return !rehearsal.rungs.empty() && rehearsal.rungs.front().P_star.rows > 0 &&
+           rehearsal.rungs.front().P_star.known == 0;
+  });
+  if (known_packings > 0)
+    all.push_back(
+        {47,
+         fmt::format(
+             "{} of {} rehearsals ran on packings whose other tests were fitted: along these the law looks better "
+             "than on new packings.",
+             known_packings, rehearsals.size()),
          "predictions"});
   const PathError *worst = nullptr, *least_held = nullptr;
   std::size_t worst_of = 0, held_of = 0;

@@ -84,13 +84,6 @@ std::string html_of(const Tiles& tiles) {
   return html + "</dl>";
 }
 
-std::string html_of(const Warning& warning) {
-  std::string html = "<p class=\"warning\">" + to_html(plain(warning.text));
-  if (!warning.section.empty())
-    html += "<a href=\"#" + warning.section + "\">" + to_html(plain(warning.link)) + "</a>.";
-  return html + "</p>";
-}
-
 std::string html_of(const Items& items) {
   std::string html = "<ul>\n";
   for (std::size_t i = 0; i < items.lines.size(); ++i) {
@@ -238,7 +231,9 @@ std::string card_style(const Page& page) {
     for (std::size_t i = 1; i < table.columns.size(); ++i) {
       std::string heading;
       for (const char c : to_plain(table.columns[i].heading))
-        heading += c == '"' || c == '\\' || c == '<' ? fmt::format("\\{:x} ", static_cast<int>(c)) : std::string(1, c);
+        heading += std::string_view("\"\\<>&\n").find(c) != std::string_view::npos
+                       ? fmt::format("\\{:x} ", static_cast<int>(c))
+                       : std::string(1, c);
       style +=
           fmt::format(".cards.{} td:nth-child({})::before {{ content: \"{}\"; }}\n", class_of(table), i + 1, heading);
     }

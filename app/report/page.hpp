@@ -21,18 +21,12 @@ struct Paragraph {
 /// The few numbers that are read first, side by side.
 struct Tile {
   Text label, value;
-  std::string note;  ///< small, beneath
+  std::string note;            ///< small, beneath
+  double number = kUndefined;  ///< before rounding, in the unit of the value
 };
 struct Tiles {
   std::string caption;  ///< what they are, for all
   std::vector<Tile> tiles;
-};
-
-/// Set apart from the text; may end with a link to a section of the page.
-struct Warning {
-  std::string text;
-  std::string section = {};  ///< id; empty: no link
-  std::string link = {};     ///< words of the link
 };
 
 struct Items {
@@ -40,7 +34,7 @@ struct Items {
   std::vector<std::string> sections = {};  ///< of each line the id that it links to, empty: none; may be none at all
 };
 
-using BlockContent = std::variant<Paragraph, Tiles, Warning, Items, Table, Figure, Drawing>;
+using BlockContent = std::variant<Paragraph, Tiles, Items, Table, Figure, Drawing>;
 
 /// What stands together; with a summary it is folded under these words.
 struct Block {

@@ -142,8 +142,10 @@ char base64_character(unsigned six_bits) {
 }
 
 std::string packed_numbers(const std::vector<double>& values, bool logarithmic) {
+  constexpr double kLargest = 1e300;  // so that the extent is finite
   const auto number = [=](double value) {
-    return !logarithmic ? value : value > 0 ? std::log(value) : std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(value) || (logarithmic && value <= 0)) return std::numeric_limits<double>::quiet_NaN();
+    return logarithmic ? std::log(value) : std::clamp(value, -kLargest, kLargest);
   };
   double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
   for (const double value : values) {
@@ -157,8 +159,7 @@ std::string packed_numbers(const std::vector<double>& values, bool logarithmic) 
   text.reserve(3 * values.size());
   for (const double value : values) {
     const double v = number(value);
-    // halves, as the whole range may be beyond a double
-    const double share = highest > lowest ? (v / 2 - lowest / 2) / (highest / 2 - lowest / 2) : 0;
+    const double share = highest > lowest ? (v - lowest) / (highest - lowest) : 0;
     const unsigned code = std::isfinite(v) ? static_cast<unsigned>(std::lround(share * kLargestCode)) : kUndefinedCode;
     text += {base64_character(code >> 12), base64_character(code >> 6), base64_character(code)};
   }

@@ -23,16 +23,12 @@ OrderedJson labelled(const Text& label) {
 OrderedJson json_of(const Paragraph& paragraph) { return {{"paragraph", to_plain(paragraph.text)}}; }
 OrderedJson json_of(const Items& items) { return {{"items", items.lines}}; }
 
-OrderedJson json_of(const Warning& warning) {
-  OrderedJson json{{"warning", warning.text}};
-  if (!warning.section.empty()) json["section"] = warning.section;
-  return json;
-}
-
 OrderedJson json_of(const Tiles& tiles) {
   OrderedJson list = OrderedJson::array();
-  for (const Tile& tile : tiles.tiles)
+  for (const Tile& tile : tiles.tiles) {
     list.push_back({{"name", to_plain(tile.label)}, {"text", to_plain(tile.value)}, {"note", tile.note}});
+    if (std::isfinite(tile.number)) list.back()["value"] = tile.number;
+  }
   return {{"caption", tiles.caption}, {"tiles", list}};
 }
 

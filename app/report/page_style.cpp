@@ -31,7 +31,6 @@ nav ol { columns: 2; padding-left: 1.5rem; margin: 1rem 0; font-size: .95rem; }
 figure { margin: 1.5rem 0 2rem; }
 figcaption { max-width: 56rem; font-size: .9rem; margin-top: .4rem; }
 .source { color: var(--quiet); }
-.warning { border-left: 4px solid var(--k2); padding-left: .75rem; }
 details { margin: 1rem 0; }
 summary { cursor: pointer; font-weight: 600; }
 .scroll { overflow-x: auto; }

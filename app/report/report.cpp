@@ -164,7 +164,7 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
         {text("Statements: " + agreement(modes.claims, [](auto&) { return true; }) +
               ". Points of curves: " + agreement(modes.verdicts, [](auto& v) { return v.nu.has_value(); }) +
               ". Parameters: " + agreement(modes.verdicts, [](auto& v) { return !v.nu; }) +
-              ". The rest is undecided, most of it because its error is wider than what matters."),
+              ". The rest is undecided, most of it because its error is wider than what matters, or an identity."),
          open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),
          folded("Curves: which agree", verdict_table(modes.verdicts, false)),
          folded("Parameters: which agree", verdict_table(modes.verdicts, true))});

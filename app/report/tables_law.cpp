@@ -118,12 +118,13 @@ Table forest(const CalibratedLaw& law, Forest which) {
                                            {"", symbol, bar},
                                            {"ours ± standard error", number, estimate_cell}};
   if (which != Forest::own) columns.push_back({"published", number, [](auto& p) { return digits(p.published(), 5); }});
-  Table table =
-      table_of(which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
-               : which == Forest::ratios  ? "Parameters over the published value: ours with 95 % interval (dot), "
-                                            "published (bar)"
-                                          : "Parameters that the paper does not have, over their own value",
-               "parameters.json", shown, columns);
+  Table table = table_of(
+      which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
+      : which == Forest::ratios
+          ? "Parameters over the published value: ours with 95 % interval (dot, at the end where it lies beyond), "
+            "published (bar)"
+          : "Parameters that the paper does not have, over their own value",
+      "parameters.json", shown, columns);
   // to both ends whatever is drawn, but no farther than none and twice the value
   table.bar_from = 1e300, table.bar_to = -1e300;
   for (const auto& row : table.rows) {

@@ -117,7 +117,7 @@ code=0
 [[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report
 grep -q 'class="verdict' report.html && grep -q 'Distrust first' report.html || fail "what a reader sees first"
 "$grainlaw" report refit -o refit.html --compare out >/dev/null
-grep -q 'Not judged' refit.html && grep -q 'grainlaw predict refit/parameters.json' refit.html || fail "a page without predictions"
+grep -q 'No path that the fit never saw has been predicted' refit.html && grep -q 'grainlaw predict refit/parameters.json' refit.html || fail "a page without predictions"
 grep -q 'id="comparison"' refit.html || fail "report --compare"
 find . -name '.*tmp*' | grep -q . && fail "temporary files left"
 exit 0

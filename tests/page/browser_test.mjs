@@ -1,12 +1,12 @@
-// The page in headless Chromium: GRAINLAW_PAGE=report.html [GRAINLAW_PAGE_OUT=DIR] node --test tests/page/browser_test.mjs
-// With GRAINLAW_PAGE_OUT screenshots at three widths and the print are written there.
+// The page GRAINLAW_PAGE in headless Chromium, with npm's packages in GRAINLAW_PAGE_MODULES: see run.sh. Into GRAINLAW_PAGE_OUT, where
+// given, go screenshots at three widths and the print.
 import assert from 'node:assert/strict';
 import {mkdirSync, readFileSync, existsSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {resolve} from 'node:path';
 import test, {after, before} from 'node:test';
 
-const require = createRequire(import.meta.url);
+const require = createRequire(process.env.GRAINLAW_PAGE_MODULES + '/');
 const puppeteer = require('puppeteer-core');
 const axe = readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 const url = 'file://' + resolve(process.env.GRAINLAW_PAGE);
@@ -95,6 +95,7 @@ async function drag(tab, [left, top, width, height], from, to) {
 
 test('dragging zooms with new ticks, Escape shows the whole as it was drawn', async () => {
   const {tab} = await open();
+  await tab.evaluate(() => document.querySelectorAll('details').forEach(d => d.open = true));
   for (const figure of await tab.$$('figure:has(svg.p)')) {
     const id = await figure.evaluate(f => f.id), panel = await figure.$('svg.p');
     if (!await panel.$('g.s')) continue;
@@ -183,21 +184,27 @@ test('a keyboard reads points, changes series, zooms and goes back', async () =>
 test('tables sort by their numbers, and notes stay with their rows', async () => {
   const {tab} = await open();
   await tab.evaluate(() => document.querySelectorAll('details').forEach(d => d.open = true));
-  const tables = await tab.$$('table');
+  const tables = await tab.$$eval('table', all => all.map(table => {
+    const rows = () => [...table.tBodies[0].rows].filter(r => r.className !== 'note').map(r => [...r.cells].map(c => c.dataset.value ?? c.textContent.trim()));
+    const notes = () => [...table.querySelectorAll('tr.note')].map(n => n.previousElementSibling.textContent + '|' + n.textContent).sort();
+    const said = {caption: table.caption.textContent, before: rows(), notes_before: notes(), columns: []};
+    for (const button of table.querySelectorAll('th button')) {
+      button.click();
+      const column = button.parentElement.cellIndex;
+      said.columns.push([rows().map(r => r[column]), [...table.querySelectorAll('[aria-sort]')].map(h => [h.cellIndex === column, h.ariaSort])]);
+    }
+    return {...said, after: rows(), notes_after: notes()};
+  }));
   let sorted = 0;
-  for (const table of tables) {
-    const rows = () => table.$$eval('tbody tr:not(.note)', rs => rs.map(r => [...r.cells].map(c => c.dataset.value ?? c.textContent.trim())));
-    const notes = () => table.$$eval('tr.note', ns => ns.map(n => n.previousElementSibling.textContent + '|' + n.textContent).sort());
-    const before = await rows(), notes_before = await notes();
-    for (const button of await table.$$('th button')) {
-      const column = await button.evaluate(b => { b.click(); return b.parentElement.cellIndex; });
-      const values = (await rows()).map(r => r[column]).filter(v => v !== '' && !isNaN(v)).map(Number);
-      assert.deepEqual(values, [...values].sort((a, b) => a - b));
-      assert.deepEqual(await table.$$eval('th', hs => hs.map(h => h.getAttribute('aria-sort')).filter(Boolean)), ['ascending']);
+  for (const {caption, before, notes_before, columns, after, notes_after} of tables) {
+    for (const [cells, marks] of columns) {
+      const values = cells.filter(v => v !== '' && !isNaN(v)).map(Number);
+      assert.deepEqual(values, [...values].sort((a, b) => a - b), caption);
+      assert.deepEqual(marks, [[true, 'ascending']], caption);
       sorted += values.length > 2;
     }
-    assert.deepEqual((await rows()).map(String).sort(), before.map(String).sort());
-    assert.deepEqual(await notes(), notes_before);
+    assert.deepEqual(after.map(String).sort(), before.map(String).sort(), caption);
+    assert.deepEqual(notes_after, notes_before, caption);
   }
   assert.ok(sorted > 20, String(sorted));
 });

@@ -86,6 +86,11 @@ TEST(ReportFirstScreen, WhatIsWorstIsSaidFirst) {
   EXPECT_TRUE(says(all, "holds 50 % of the rows of stress ratio along far"));
   EXPECT_TRUE(says(all, "Never tried: unloading and turning", 10));
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](auto& a, auto& b) { return a.weight > b.weight; }));
+  Rehearsal& rehearsal = input.calibration.law.rehearsals.front();
+  rehearsal.rungs = {{Rung::reduced, {90, 1e-4, 0, 0.02}, {90, 1e-4, 0, 0.02}, {90, 1e-4, 0, 0.02}}};
+  EXPECT_TRUE(says(reservations(input, good), "1 of 1 rehearsals ran on packings whose other tests were fitted"));
+  rehearsal.rungs.front().P_star.known = 1e-6;
+  EXPECT_FALSE(says(reservations(input, good), "whose other tests were fitted", 100));
   input.calibration.law.converged = false;
   input.calibration.stages.back().converged = false;
   EXPECT_TRUE(says(reservations(input, bad), "Not converged: evolution", 1));
