@@ -64,6 +64,9 @@ mapfile -t shipped < <(cd "$source" && find examples -name '*.json' -not -path '
 for file in "${shipped[@]}"; do "$grainlaw" check "$source/$file" >/dev/null 2>err || fail "$file: $(cat err)"; done
 (( ${#shipped[@]} > 20 )) || fail "${#shipped[@]} examples"
 
+# a SPEC that no law can be fitted to is one for the engine alone
+"$grainlaw" check "$source/examples/law/cycles/spec.json" | tr -s '\n ' ' ' | grep -q 'calibrate refuses it: .*none of role calibration' || fail cycles
+
 # beyond the calibrated range
 echo '{"initial": {"nu": 0.728}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.9}}]}' >far.json
 "$grainlaw" check out/parameters.json far.json | grep -q 'deviatoric strain 0.9 lies beyond the calibrated 0.26' || fail far
