@@ -80,7 +80,7 @@ grep -q '^bands     none: the parameters have no covariance' text && [[ $(tail -
 
 # a path becomes a rehearsal: in parameters.json, beside the data set, and in the bands of other paths, not of its own
 "$grainlaw" predict out/parameters.json path.json -o alone >text0
-grep -q "the law's own error is not in them" text0 || fail "silent about the law's own error: $(cat text0)"
+tr -s '\n ' ' ' <text0 | grep -q "the law's own error is not in them" || fail "silent about the law's own error: $(cat text0)"
 jq -e '.rung.recommended == .rung.needed and (.rung.rehearsed | not) and .rehearsals == null' alone/prediction.json >/dev/null || fail "advice without rehearsals"
 cp -r out rehearsed
 "$grainlaw" predict rehearsed/parameters.json path.json -o rehearsed/uni --against out/predictions/uni --rehearse >/dev/null 2>log || fail "--rehearse: $(cat log)"
