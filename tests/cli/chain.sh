@@ -99,6 +99,7 @@ diff <(jq .rehearsals rehearsed/parameters.json) <(jq .rehearsals refitted/param
 "$grainlaw" predict refitted/parameters.json other.json -o refitted/predictions/other --dem --seeds 3 --spec out/spec.resolved.json --store out --rehearse >/dev/null 2>log ||
   fail "--dem --rehearse: $(cat log)"
 "$grainlaw" study bands refitted -o bands >text || fail "study bands"
+(( $(LC_ALL=C.UTF-8 wc -L <text) <= 80 )) || fail "study bands is wider than 80 columns: $(cat text)"
 jq -e '(.summaries | length) >= 6 and .summaries[0].paths == 2' bands/study.json >/dev/null || fail "study bands: $(cat text)"
 code=0
 "$grainlaw" predict out/parameters.json path.json -o bad --rehearse 2>err || code=$?
