@@ -42,15 +42,12 @@ PathTraits covered_by(const std::vector<const Path*>& paths) {
   return all;
 }
 
-/// Of `tests` as they would be run, and the fit of `rows`; `like` is what the rate is measured on.
-Forecast forecast_of(const std::vector<dem::PlannedTest>& tests, double rows, const dem::PreparationOptions& like,
-                     const fs::path& output, const Execution& execution) {
+/// Of runs that cost this and the fit of `rows`; `like` is what the rate is measured on.
+Forecast forecast_of(const dem::ExpectedCost& cost, double rows, const dem::PreparationOptions& like,
+                     const Execution& execution) {
   Forecast forecast;
-  forecast.cost = dem::expected_cost(tests, output);
-  std::vector<const Path*> paths;
-  for (const dem::PlannedTest& test : tests) paths.push_back(&test.path);
-  forecast.covers = covered_by(paths);
-  const double work = forecast.cost.particle_steps;
+  forecast.cost = cost;
+  const double work = cost.particle_steps;
   forecast.rate = std::nan("");
   if (work == 0 && rows == 0) return forecast;
   forecast.rate = dem::measured_rate(like, execution.threads, execution.stop);
@@ -65,6 +62,16 @@ double fitted_rows(const std::vector<dem::PlannedTest>& tests) {
     if (test.role == Role::calibration) rows += static_cast<double>(test.path.segments.size()) * test.rows;
   }
   return rows;
+}
+
+/// Of `tests` as they would be run, and their fit where `fitted`.
+Forecast forecast_of(const std::vector<dem::PlannedTest>& tests, bool fitted, const dem::PreparationOptions& like,
+                     const fs::path& output, const Execution& execution) {
+  Forecast forecast = forecast_of(dem::expected_cost(tests, output), fitted ? fitted_rows(tests) : 0, like, execution);
+  std::vector<const Path*> paths;
+  for (const dem::PlannedTest& test : tests) paths.push_back(&test.path);
+  forecast.covers = covered_by(paths);
+  return forecast;
 }
 
 void note_beyond(const PathTraits& path, const ValidRange& range, std::vector<std::string>& notes) {
@@ -82,8 +89,7 @@ void note_beyond(const PathTraits& path, const ValidRange& range, std::vector<st
 
 Forecast forecast(const CalibrationInput& input, const fs::path& output, const Execution& execution) {
   if (!input.dataset) {
-    const std::vector<dem::PlannedTest> tests = plan(*input.spec);
-    return forecast_of(tests, fitted_rows(tests), input.spec->preparation, output, execution);
+    return forecast_of(plan(*input.spec), true, input.spec->preparation, output, execution);
   }
   double rows = 0, bytes = 0;
   std::vector<const Path*> paths;
@@ -94,8 +100,7 @@ Forecast forecast(const CalibrationInput& input, const fs::path& output, const E
     if (!unknown) bytes += static_cast<double>(size);
     if (test.record.role == Role::calibration) rows += static_cast<double>(test.record.rows.size());
   }
-  Forecast fit = forecast_of({}, rows, {}, output, execution);
-  fit.cost.bytes = bytes;
+  Forecast fit = forecast_of({.bytes = bytes}, rows, {}, execution);
   fit.covers = covered_by(paths);
   return fit;
 }
@@ -103,8 +108,7 @@ Forecast forecast(const CalibrationInput& input, const fs::path& output, const E
 Forecast forecast_of_pilot(const PrecisionTarget& target, const dem::Spec& frame, const fs::path& output,
                            const Execution& execution) {
   const dem::Spec pilot = rounds_of(planned_spec(frame, pilot_settings(frame), target.path));
-  const std::vector<dem::PlannedTest> tests = plan(pilot);
-  Forecast forecast = forecast_of(tests, fitted_rows(tests), pilot.preparation, output, execution);
+  Forecast forecast = forecast_of(plan(pilot), true, pilot.preparation, output, execution);
   forecast.notes.emplace_back("this is the pilot alone; what the plan takes follows from what it shows");
   return forecast;
 }
@@ -112,7 +116,9 @@ Forecast forecast_of_pilot(const PrecisionTarget& target, const dem::Spec& frame
 Forecast forecast(const dem::TestFile& test, const fs::path& output, const Execution& execution) {
   dem::PreparationOptions like = test.preparation;
   if (test.given) like.packing.particles = static_cast<std::int64_t>(test.given->packing.size());
-  return forecast_of({dem::planned(test)}, 0, like, output, execution);
+  Forecast forecast = forecast_of(dem::expected_cost(test, output), 0, like, execution);
+  forecast.covers = covered_by({&test.path});
+  return forecast;
 }
 
 Forecast forecast(const PredictionInput& input, const Execution& execution) {
@@ -121,8 +127,8 @@ Forecast forecast(const PredictionInput& input, const Execution& execution) {
   if (input.new_runs) {
     const NewRuns& runs = *input.new_runs;
     const auto seeds = dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name);
-    forecast = forecast_of(plan(runs.spec, input.path, seeds, input.path_name), 0, runs.spec.preparation, runs.store,
-                           execution);
+    forecast = forecast_of(plan(runs.spec, input.path, seeds, input.path_name), false, runs.spec.preparation,
+                           runs.store, execution);
   }
   if (law_decides(path)) {
     forecast.notes.emplace_back("the law decides where the path leads; prediction.json says");

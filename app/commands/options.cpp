@@ -59,7 +59,7 @@ std::vector<std::uint64_t> seeds_of(const std::string& option, const std::string
     const auto last = dash == std::string::npos ? first : whole_number<std::uint64_t>(part.substr(dash + 1));
     if (!first || !last || *last < *first) refuse("give seeds and ranges of them, e.g. 201-205 or 1,3,7-9");
     if (*last - *first >= kMostSeeds - seeds.size()) refuse(fmt::format("give at most {} seeds", kMostSeeds));
-    for (std::uint64_t seed = *first; seed <= *last; ++seed) seeds.push_back(seed);
+    for (std::uint64_t more = 0; more <= *last - *first; ++more) seeds.push_back(*first + more);
   }
   return seeds;
 }

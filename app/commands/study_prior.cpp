@@ -19,7 +19,7 @@ struct PriorOptions {
 };
 
 std::string text_of(const chain::PriorStudy& study, const fs::path& file) {
-  std::string text = "Calibrations of few packings: how often the intervals hold what all packings find\n\n";
+  std::string text = "Calibrations of few packings: how often intervals hold what all packings find\n\n";
   text += fmt::format("{:>10} {:>9} {:>13} {:>7} {:>10} {:>12} {:>10}\n", "particles", "packings", "calibrations",
                       "ratio", "moderated", "unmoderated", "narrower");
   for (const chain::FewPackings& f : study.few)

@@ -27,7 +27,7 @@ std::string lines_of(const chain::SettingResult& r, chain::Packings packings) {
   if (!r.dominated_by.empty()) name += "  dominated";
   if (!o.model.empty()) name += "  " + o.model;
   if (!o.note.empty()) name += "  " + one_line(o.note, kNote);
-  return fmt::format("{}\n{:>6} {:>9.2e} {:>8.1f} {:>7.1f} {:>7} {:>7} {:>8} {:>8} {:>8} {:>7}\n",
+  return fmt::format("{}\n{:>5} {:>9.2e} {:>8.1f} {:>6.1f} {:>7} {:>7} {:>8} {:>8} {:>7} {:>6}\n",
                      fmt::join(wrapped(name, 80), "\n  "), o.seeds.size(), o.cost.particle_steps, o.cost.seconds,
                      o.cost.fit_seconds, error(r.error), error(r.floor), error(r.sampling), error(r.reached),
                      error(r.reached_error), percent(o.energy_residual));
@@ -52,7 +52,7 @@ std::string verdict_of(const chain::SettingResult& judged) {
 }  // namespace
 
 std::string study_text(const chain::SettingsStudy& study) {
-  std::string text = fmt::format("{:>6} {:>9} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8} {:>7}\n", "seeds", "work",
+  std::string text = fmt::format("{:>5} {:>9} {:>8} {:>6} {:>7} {:>7} {:>8} {:>8} {:>7} {:>6}\n", "seeds", "work",
                                  "seconds", "of fit", "error", "floor", "sampling", "reached", "+-", "energy");
   for (const chain::SettingResult& r : study.results) text += lines_of(r, study.packings);
   text += "work in particle-steps\n";
@@ -94,13 +94,15 @@ std::string study_text(const chain::BandsStudy& study) {
                         fmt::format("{:.5f}", c.rms), fmt::format("{:.5f}", c.tau), share(c.without), share(c.mean),
                         share(c.single));
   }
-  text += "* too few others of the kind: all\nover the paths, each left out (least of a path)\n";
+  constexpr const char* kSum = "{:<9} {:<8} {:>5} {:>8} {:>6} {:>6} {:>7} {:>6} {:>7} {:>9}\n";
+  text += "* too few others of the kind: all\n\nover the paths, each left out; least: of a path\n";
+  text += fmt::format(fmt::runtime(kSum), "model", "quantity", "paths", "without", "mean", "least", "single", "least",
+                      "curves", "promised");
   for (const chain::CoverageSummary& s : study.summaries) {
-    text += fmt::format(
-        "{:<9} {:<7} {:>3} paths  {:3.0f}% without, {:3.0f}% mean ({:.0f}), {:3.0f}% single ({:.0f}), curves {:.0f} of "
-        "{:.0f}%\n",
-        to_string(s.model), to_string(s.quantity), s.paths, 100 * s.without, 100 * s.mean, 100 * s.least_mean,
-        100 * s.single, 100 * s.least_single, 100 * s.whole, 100 * s.promised_whole);
+    const auto share = [](double x) { return fmt::format("{:.0f}%", 100 * x); };
+    text += fmt::format(fmt::runtime(kSum), to_string(s.model), to_string(s.quantity), s.paths, share(s.without),
+                        share(s.mean), share(s.least_mean), share(s.single), share(s.least_single), share(s.whole),
+                        share(s.promised_whole));
   }
   return text;
 }

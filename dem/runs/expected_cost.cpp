@@ -18,6 +18,7 @@ constexpr double kPassesPerRelaxation = 1500;  // force passes of the relaxation
 constexpr double kBytesPerRow = 880;           // of a series
 constexpr double kBytesPerKept = 72;           // of a sphere in a kept state
 constexpr double kBytesPerEnd = 120;           // of a sphere in the state at the end of a test
+constexpr double kBytesPerTableRow = 140;      // of a sphere in end.csv
 constexpr double kBytesPerRecord = 2500;       // of run.json
 
 constexpr double kMeasured = 0.4;  // wall time of a measurement [s]
@@ -102,10 +103,13 @@ ExpectedCost expected_cost(const std::vector<PlannedTest>& tests, const fs::path
   return cost;
 }
 
-PlannedTest planned(const TestFile& test) {
-  PlannedTest planned{test, "", Role::validation};
-  planned.branch_of_preparation = test.start == Start::preparation;
-  return planned;
+ExpectedCost expected_cost(const TestFile& test, const fs::path& output) {
+  const bool prepared = test.start == Start::preparation;
+  ExpectedCost cost = expected_cost({{test, "", Role::validation, prepared}}, output);
+  const double N = test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
+  cost.bytes += prepared ? kept(test.preparation) * N * kBytesPerKept + 2 * test.rows * kBytesPerRow
+                         : N * (kBytesPerEnd + kBytesPerTableRow);
+  return cost;
 }
 
 double measured_rate(const PreparationOptions& like, int threads, const std::stop_token& stop) {

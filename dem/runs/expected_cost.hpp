@@ -27,8 +27,8 @@ static_assert(tells_every_member<ExpectedCost>());
 /// from the mean size distribution.
 ExpectedCost expected_cost(const std::vector<PlannedTest>& tests, const std::filesystem::path& parent);
 
-/// What simulate() would run.
-PlannedTest planned(const TestFile& test);
+/// Of simulate() into `output`, whose copies of series and states count.
+ExpectedCost expected_cost(const TestFile& test, const std::filesystem::path& output);
 
 /// Particle-steps that this machine takes per second now on `threads` threads together, one packing on each: measured for
 /// about 0.4 s on packings like `like` (of 10000 spheres at most) that shear at a volume fraction of 0.72. Throws

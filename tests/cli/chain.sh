@@ -89,7 +89,7 @@ grep -q '^bands     none: the parameters have no covariance' text && [[ $(tail -
 
 # a path becomes a rehearsal: in parameters.json, beside the data set, and in the bands of other paths, not of its own
 "$grainlaw" predict out/parameters.json path.json -o alone >text0
-grep -q "the law's own error is not in them" text0 || fail "silent about the law's own error: $(cat text0)"
+tr -s '\n ' ' ' <text0 | grep -q "the law's own error is not in them" || fail "silent about the law's own error: $(cat text0)"
 jq -e '.rung.recommended == .rung.needed and (.rung.rehearsed | not) and .rehearsals == null' alone/prediction.json >/dev/null || fail "advice without rehearsals"
 cp -r out rehearsed
 "$grainlaw" predict rehearsed/parameters.json path.json -o rehearsed/uni --against out/predictions/uni --rehearse >/dev/null 2>log || fail "--rehearse: $(cat log)"
@@ -108,6 +108,7 @@ diff <(jq .rehearsals rehearsed/parameters.json) <(jq .rehearsals refitted/param
 "$grainlaw" predict refitted/parameters.json other.json -o refitted/predictions/other --dem --seeds 3 --spec out/spec.resolved.json --store out --rehearse >/dev/null 2>log ||
   fail "--dem --rehearse: $(cat log)"
 "$grainlaw" study bands refitted -o bands >text || fail "study bands"
+(( $(LC_ALL=C.UTF-8 wc -L <text) <= 80 )) || fail "study bands is wider than 80 columns: $(cat text)"
 jq -e '(.summaries | length) >= 6 and .summaries[0].paths == 2' bands/study.json >/dev/null || fail "study bands: $(cat text)"
 code=0
 "$grainlaw" predict out/parameters.json path.json -o bad --rehearse 2>err || code=$?

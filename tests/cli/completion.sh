@@ -20,12 +20,18 @@ bash_words() {
 fish_words() { HOME=$PWD fish --no-config -c 'source fish.script; complete -C $argv[1]' "$1" 2>/dev/null | cut -f1; }
 # a real terminal for zsh's line editor: what it lists after a tab
 zsh_words() {
+  cat >setup.zsh <<ZSH
+unsetopt zle_bracketed_paste 2>/dev/null
+fpath=($share/zsh/site-functions \$fpath)
+autoload -U compinit
+compinit -u -D
+LISTMAX=0 COLUMNS=200 LINES=200 PS1='@''@'
+ZSH
   HOME=$PWD zsh -f -c '
     zmodload zsh/zpty
     zpty z "TERM=dumb zsh -f -i"
-    zpty -w z "PS1=; unsetopt zle_bracketed_paste 2>/dev/null; fpath=('"$share"'/zsh/site-functions \$fpath); autoload -U compinit; compinit -u -D; LISTMAX=0; COLUMNS=200; LINES=200; zstyle \":completion:*\" list-prompt \"\""
-    zpty -w z "print READY"
-    while zpty -r z line; do [[ $line == READY* ]] && break; done
+    zpty -w z "source ./setup.zsh"
+    zpty -r z line "*@@*"  # the prompt: keys are now read by the line editor
     zpty -n -w z "$1"$'"'"'\t\t\x15print DONE\n'"'"'
     while zpty -r z line; do print -r -- "$line"; [[ $line == DONE* ]] && break; done' - "$1" | tr -d '\r\a' | tr -s ' ' '\n'
 }

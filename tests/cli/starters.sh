@@ -36,8 +36,11 @@ jq -e '.[0] | .sound and .kind == "SPEC" and .forecast.runs == 24 and .forecast.
 [[ ! -e out ]] || fail "--dry-run writes"
 "$grainlaw" calibrate spec.json -o out --json --quiet >calibrated.json || fail "the spec does not run"
 jq -e --slurpfile dry dry.json '.runs == $dry[0].runs and .converged' calibrated.json >/dev/null || fail "$(cat calibrated.json)"
-awk -v expected="$(jq .bytes dry.json)" -v real="$(du -sb out/runs out/dataset | awk '{ s += $1 } END { print s }')" \
-  'BEGIN { exit !(real < 1.3 * expected && expected < 1.3 * real) }' || fail "disk: $(jq .bytes dry.json), $(du -sb out)"
+as_large() { # EXPECTED FOLDER...
+  awk -v expected="$1" -v real="$(du -sb "${@:2}" | awk '{ s += $1 } END { print s }')" \
+    'BEGIN { exit !(real < 1.3 * expected && expected < 1.3 * real) }' || fail "disk: $1 expected: $(du -sb "${@:2}")"
+}
+as_large "$(jq .bytes dry.json)" out/runs out/dataset
 "$grainlaw" calibrate spec.json -o out --dry-run --json | jq -e '.runs_found == .runs and .particle_steps == 0' >/dev/null ||
   fail "finished runs are not found"
 "$grainlaw" predict out/parameters.json path.json -o out/predictions/mine --dem --dry-run --json >dry.json
@@ -48,7 +51,9 @@ jq -e '.seeds == [11, 12]' out/predictions/mine/dem/dataset.json >/dev/null || f
 "$grainlaw" calibrate --dataset dataset -o given >text 2>log || fail "the data set: $(cat log)"
 fits text || fail "calibrate is wider than 80 columns"
 "$grainlaw" simulate test.json -o tested --dry-run | grep -q '^  runs *2, of which 0' || fail "simulate --dry-run"
+"$grainlaw" simulate test.json -o tested --dry-run --json >dry.json
 "$grainlaw" simulate test.json -o tested --quiet >/dev/null || fail "the test"
+as_large "$(jq .bytes dry.json)" tested
 "$grainlaw" report out -o report.html >/dev/null || fail "report"
 
 # whatever the program reads or has written
@@ -63,6 +68,9 @@ mapfile -t shipped < <(cd "$source" && find examples -name '*.json' -not -path '
   -not -path 'examples/studies/*')
 for file in "${shipped[@]}"; do "$grainlaw" check "$source/$file" >/dev/null 2>err || fail "$file: $(cat err)"; done
 (( ${#shipped[@]} > 20 )) || fail "${#shipped[@]} examples"
+
+# a SPEC that no law can be fitted to is one for the engine alone
+"$grainlaw" check "$source/examples/law/cycles/spec.json" | tr -s '\n ' ' ' | grep -q 'calibrate refuses it: .*none of role calibration' || fail cycles
 
 # beyond the calibrated range
 echo '{"initial": {"nu": 0.728}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.9}}]}' >far.json

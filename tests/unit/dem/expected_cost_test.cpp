@@ -61,15 +61,15 @@ TEST_F(ExpectedCosts, OfATestAreItsPreparationAndItself) {
   std::ofstream(folder_ / "t.json") << R"({"particles": 40, "strain_rate": 20000, "rows": 10, "initial": {"nu": 0.74},
                                            "segments": [{"mode": "D2", "extent": {"eps_dev": 0.02}}]})";
   const TestFile test = read_test(folder_ / "t.json");
-  EXPECT_EQ(expected_cost({planned(test)}, folder_).runs, 2u);
+  EXPECT_EQ(expected_cost(test, folder_).runs, 2u);
   simulate(test, folder_, {});
-  EXPECT_EQ(expected_cost({planned(test)}, folder_).found, 2u);
+  EXPECT_EQ(expected_cost(test, folder_).found, 2u);
   std::ofstream(folder_ / "s.json") << R"({"state": "end.state", "strain_rate": 20000, "rows": 10,
                                            "segments": [{"mode": "D2", "extent": {"eps_dev": 0.02}}]})";
-  const PlannedTest given = planned(read_test(folder_ / "s.json"));
-  EXPECT_EQ(expected_cost({given}, folder_).runs, 1u);  // no preparation
-  EXPECT_GE(expected_cost({given}, folder_).particle_steps, expected_work(given));
-  EXPECT_EQ(expected_cost({given}, folder_).found, 0u);
+  const TestFile given = read_test(folder_ / "s.json");
+  EXPECT_EQ(expected_cost(given, folder_).runs, 1u);  // no preparation
+  EXPECT_GE(expected_cost(given, folder_).particle_steps, expected_work(given));
+  EXPECT_EQ(expected_cost(given, folder_).found, 0u);
 }
 
 TEST(MeasuredRate, IsPositiveAndStopsOnRequest) {
