@@ -3,11 +3,15 @@
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
 # The page in headless Chromium (tests/page): drawn with and without its script, toggles, zoom, keys, links, downloads, axe; its
 # size, time and printed pages. Screenshots and prints are left in build/acceptance/page.
-# --quick: the page of the shipped data alone. Otherwise also that of the quickstart, reused from build/acceptance when finished.
+# The way in (door.sh): both tutorials, the pages of docs/ as a site, seconds and commands from a clone to one's own path, the gallery.
+# --quick: the page of the shipped data, tutorials and site. Otherwise also the page of the quickstart, reused from build/acceptance
+# when finished, a fresh clone, built without a compiler cache, and the gallery.
 set -euo pipefail
 
 # shellcheck source=tests/acceptance/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
+# shellcheck source=tests/acceptance/door.sh
+. tests/acceptance/door.sh
 ./install-packages.sh --full >&2
 pages=$out/page
 mkdir -p "$pages"
@@ -50,7 +54,11 @@ quickstart() {
 }
 
 paper
+tutorials
+site
 if [[ $quick == no ]]; then
   quickstart
+  own_path
+  gallery
 fi
 finish_figures
