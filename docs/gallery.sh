@@ -20,8 +20,9 @@ picture() {
 # entry NAME TITLE COMMAND: a heading, what the page says of itself, and its pictures.
 entry() {
   local width
-  printf '<h2>%s</h2>\n<p><a href="%s/report.html">The page</a>, %d kB, by <code>%s</code>; <a href="%s.txt">what it prints</a>.</p>\n<p>\n' \
+  printf '<h2>%s</h2>\n<p><a href="%s/report.html">The page</a>, %d kB, by <code>%s</code>; <a href="%s.txt">what it prints</a>;\n' \
     "$2" "$1" "$(($(stat -c %s "$out/$1/report.html") / 1024))" "$3" "$1"
+  printf '<a href="%s/report.html#predictions">predictions</a>, <a href="%s/report.html#packing">force chains</a>.</p>\n<p>\n' "$1" "$1"
   for width in 1280 390; do
     [[ ! -s $out/$1-$width.png ]] ||
       printf '<a href="%s/report.html"><img src="%s-%d.png" width="%d" alt="First screen, %d pixels wide"></a>\n' \
@@ -42,7 +43,7 @@ fi
   echo '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
   echo '<title>Gallery – grainlaw</title><style>'
   cat "$docs/site/site.css"
-  echo 'body { display: block; padding: 1rem 2rem; } main img { border: 1px solid var(--rule); vertical-align: top; }'
+  echo 'body { display: block; padding: 1rem 2rem; } main { max-width: none; } p { max-width: none; } main img { border: 1px solid var(--rule); vertical-align: top; }'
   echo '</style></head><body><main><h1>Gallery</h1>'
   entry quickstart 'Quickstart: five packings of 2000 spheres, simulated here' 'examples/quickstart/run.sh'
   entry paper 'The paper: five packings of 9261 spheres, from the shipped data' 'examples/paper/refit.sh'

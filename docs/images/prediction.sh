@@ -5,10 +5,10 @@
 set -euo pipefail
 (($# == 2)) || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
 
-# Normalised errors of the rung as in `grainlaw predict`: root mean square over the runs.
+# Normalised errors of the rung as in `grainlaw predict`: mean over the runs.
 errors=$(jq -r '[.comparisons[] | select(.model == "memory" and .initial == "law" and .seed != null)] as $runs
   | ["P_star", "s_par", "F_par"][] as $name
-  | [$runs[].quantities[] | select(.quantity == $name).normalised_rms] | (map(. * .) | add / length | sqrt)' "$1/comparison.json")
+  | [$runs[].quantities[] | select(.quantity == $name).normalised_rms] | (add / length)' "$1/comparison.json")
 runs=("$1"/dem/*.csv)
 
 # Files in turn: the law, then the runs. Columns are found by their names, units left out.
