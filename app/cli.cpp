@@ -6,10 +6,14 @@
 #include <array>
 #include <cstdio>
 #include <new>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
 #include "app/exit_code.hpp"
+#include "app/terminal/help.hpp"
 #include "app/terminal/interrupt.hpp"
 #include "app/terminal/progress_printer.hpp"
 #include "app/terminal/session.hpp"
@@ -20,8 +24,9 @@ namespace grainlaw::app {
 namespace {
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 ok, 1 failure, 2 invalid input or usage, 3 did not converge, 130 interrupted.\n"
-    "Results go to standard output, progress and messages to standard error. Files: docs/formats.md";
+    "Exit codes: 0 ok, 1 failure, 2 invalid input or usage, 3 did not converge,\n"
+    "130 interrupted. Results go to standard output, progress and messages to\n"
+    "standard error.";
 
 struct Common {
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -33,45 +38,78 @@ struct Common {
 
 void add_common(CLI::App& command, Common& common) {
   command.add_option("--threads", common.threads, "threads of all runs together; results do not depend on it")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+      ->check(between(1, 1024))
+      ->type_name("N")
+      ->default_str("all cores");
   command.add_flag("--json", common.json, "result on standard output as JSON");
   command.add_flag("--quiet", common.quiet, "no progress, no warnings");
-  command.footer(kExitCodes);
 }
 
 /// Of the commands that run DEM.
 void add_checkpoints(CLI::App& command, Common& common) {
-  command.add_flag("--resume,!--no-resume", common.resume,
-                   "go on from the checkpoints of interrupted runs (default); --no-resume starts them anew");
+  command.add_flag(
+      "--resume,!--no-resume", common.resume,
+      "go on from the checkpoints of interrupted runs, as is done without it; --no-resume starts them anew");
   command
       .add_option("--checkpoint", common.checkpoint_interval, "seconds between two checkpoints of a run; 0: every step")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(between(0, 1e6))
+      ->type_name("SECONDS")
       ->capture_default_str();
 }
 
+using Kind = Command::Kind;
+
 constexpr std::array kCommands{
-    Command{"simulate", "one packing or one element test in the DEM engine", declare_simulate, true},
-    Command{"calibrate", "packings and element tests of a spec, then the law's parameters", declare_calibrate, true},
-    Command{"predict", "the calibrated law along a strain path, and DEM of the same path", declare_predict, true},
-    Command{"report", "one HTML page about a calibration and its predictions", declare_report, false}};
+    Command{"init", "a commented starter: SPEC, TEST, PATH or a data set", declare_init, Kind::says},
+    Command{"check", "whether files are sound, what they would run, how long, how much disk", declare_check,
+            Kind::computes},
+    Command{"simulate", "one packing or one element test in the DEM engine", declare_simulate, Kind::simulates},
+    Command{"calibrate", "packings and element tests of a spec, then the law's parameters", declare_calibrate,
+            Kind::simulates},
+    Command{"predict", "the calibrated law along a strain path, and DEM of the same path", declare_predict,
+            Kind::simulates},
+    Command{"report", "one HTML page about a calibration and its predictions", declare_report, Kind::computes}};
 
 constexpr std::array kStudies{
-    Command{"integrator", "what integrating a path costs at which error", declare_study_integrator, false},
-    Command{"dem", "what settings of the engine cost and how far they are from a reference", declare_study_dem, true},
-    Command{"fit", "what a fit loses that leaves out a part of the data; runs no DEM", declare_study_fit, false},
+    Command{"integrator", "what integrating a path costs at which error", declare_study_integrator, Kind::computes},
+    Command{"dem", "what settings of the engine cost and how far they are from a reference", declare_study_dem,
+            Kind::simulates},
+    Command{"fit", "what a fit loses that leaves out a part of the data; runs no DEM", declare_study_fit,
+            Kind::computes},
     Command{"chain", "what settings from packings to a prediction cost and how far it is from that of a reference",
-            declare_study_chain, true},
-    Command{"bands", "whether bands hold on rehearsals that are left out of them", declare_study_bands, false},
-    Command{"prior", "what many packings say of the errors of few; runs no DEM", declare_study_prior, false}};
+            declare_study_chain, Kind::simulates},
+    Command{"bands", "whether bands hold on rehearsals that are left out of them", declare_study_bands, Kind::computes},
+    Command{"prior", "what many packings say of the errors of few; runs no DEM", declare_study_prior, Kind::computes}};
+
+constexpr std::array kAboutItself{
+    Command{"completion", "script of a shell that completes commands and options", declare_completion, Kind::says},
+    Command{"man", "manual pages of all commands, into a folder", declare_man, Kind::says}};
 
 /// Declares `command` below `app`; when it is the one that is given, `chosen` becomes its task.
 void add(CLI::App& app, const Command& command, Common& common, Task& chosen) {
   CLI::App* added = app.add_subcommand(command.name, command.description);
   const Task task = command.declare(*added);
-  if (command.simulates) add_checkpoints(*added, common);
-  add_common(*added, common);
+  if (command.kind == Kind::simulates) add_checkpoints(*added, common);
+  if (command.kind != Kind::says) add_common(*added, common);
   added->callback([task, &chosen] { chosen = task; });
+}
+
+/// The whole command line.
+void declare(CLI::App& app, Common& common, Task& chosen) {
+  app.set_version_flag("--version", version_text(), "version and git revision");
+  app.set_help_flag("-h,--help", "this text");
+  app.require_subcommand(1);
+  app.footer(kExitCodes);
+  use_own_help(app);
+  for (const Command& command : kCommands) add(app, command, common, chosen);
+  CLI::App* study = app.add_subcommand("study", "measurements of the program itself");
+  study->require_subcommand(1);
+  for (const Command& command : kStudies) add(*study, command, common, chosen);
+  for (const Command& command : kAboutItself) add(app, command, common, chosen);
+  app.add_subcommand("help", "the same as COMMAND --help")->add_option("COMMAND", "of which command")->expected(-1);
+  for (CLI::App* command : app.get_subcommands({})) command->set_version_flag("--version", version_text())->group("");
+  for (CLI::App* command : study->get_subcommands({}))
+    command->set_version_flag("--version", version_text())->group("");
 }
 
 int fail(ExitCode code, const std::string& message) {
@@ -114,23 +152,31 @@ int perform(const Task& task, const Common& common, const std::string& command) 
 
 int run(int argc, char** argv) {
   CLI::App app("grainlaw: from frictionless grains to an incremental constitutive law and back", "grainlaw");
-  app.set_version_flag("--version", version_text());
-  app.require_subcommand(1);
-  app.footer(kExitCodes);
   Common common;
   Task task;
-  for (const Command& command : kCommands) add(app, command, common, task);
-  CLI::App* study =
-      app.add_subcommand("study", "measurements of the program itself: integrator, dem, fit, chain, bands, prior");
-  study->require_subcommand(1);
-  study->footer(kExitCodes);
-  for (const Command& command : kStudies) add(*study, command, common, task);
+  declare(app, common, task);
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  const bool help = !words.empty() && words.front() == "help";
+  if (help) words.erase(words.begin());
+  if (const std::string slip = slip_in(app, words); !slip.empty()) return fail(ExitCode::invalid_input, slip);
+  const CLI::App& command = command_of(app, words);
+  if (help) {
+    const Task say = [&](Session&) {
+      print_result(command.help());
+      return ExitCode::ok;
+    };
+    return perform(say, common, "grainlaw help");
+  }
+  if (words.empty() || (words.size() == 1 && !commands_of(command).empty() && &command != &app)) {
+    std::fputs((words.empty() ? overview(app) : command.help()).c_str(), stderr);
+    return static_cast<int>(ExitCode::invalid_input);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version
     return app.exit(wish);
   } catch (const CLI::ParseError& error) {
-    return fail(ExitCode::invalid_input, fmt::format("{}; see grainlaw --help", error.what()));
+    return fail(ExitCode::invalid_input, fmt::format("{}; see {} --help", error.what(), full_name(command)));
   } catch (const std::exception& error) {
     return fail(ExitCode::invalid_input, error.what());
   }

@@ -6,7 +6,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "chain/fitted_paths.hpp"
 #include "chain/rehearsals.hpp"
+#include "dem/runs/pictures.hpp"
 #include "fit/calibration_file.hpp"
 #include "fit/describe.hpp"
 #include "fit/leave_one_out.hpp"
@@ -26,7 +28,7 @@ namespace fs = std::filesystem;
 void remove_results_of_others(const fs::path& output, const std::string& spec) {
   std::ifstream file(output / "spec.resolved.json", std::ios::binary);
   if (std::string{std::istreambuf_iterator<char>(file), {}} == spec) return;
-  for (const char* name : {"parameters.json", "calibration.json"}) fs::remove(output / name);
+  for (const char* name : {"parameters.json", "calibration.json", "fitted_paths.json"}) fs::remove(output / name);
 }
 
 /// Refuses before anything runs what no fit can be made of.
@@ -82,22 +84,35 @@ std::vector<TestRecord> described_tests(const Dataset& dataset) {
 fit::Calibration fit_and_save(const Dataset& dataset, const fs::path& folder, const fit::CalibrationOptions& options,
                               const fs::path& output, const Execution& execution) {
   Watch& watch = execution.watch;
-  const auto control = [&](const char* stage) { return watch.control(0, stage, execution.stop); };
-  watch.begin({1}, "");
+  const double packings = static_cast<double>(dataset.seeds.size());
+  // of the time that the parts take together; the other modes are fitted in closed forms alone
+  watch.begin({1, options.profiles ? packings : 0, 0.02}, "");
+  const auto part = [&](std::size_t which, const char* name, const auto& work) {
+    auto result = work(watch.control(which, name, execution.stop));
+    watch.finished(which);
+    return result;
+  };
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
-  fit::Calibration calibration = fit::calibrate(tests, options, control("fit"));
+  fit::Calibration calibration =
+      part(0, "fit", [&](const RunControl& control) { return fit::calibrate(tests, options, control); });
   calibration.law.dataset_digest = dataset.digest;
   rehearse(calibration.law, rehearsals_of(dataset, folder), execution);
-  if (options.profiles) calibration.left_out = fit::leave_one_out(tests, options, control("fit without one packing"));
+  if (options.profiles)
+    calibration.left_out = part(1, "fits without one packing", [&](const RunControl& control) {
+      return fit::leave_one_out(tests, options, control);
+    });
   fit::ModeComparison modes;
-  modes.descriptions = fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c,
-                                     options, control("fit of the other modes"));
+  modes.descriptions = part(2, "fit of the other modes", [&](const RunControl& control) {
+    return fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c, options,
+                         control);
+  });
   modes.verdicts = verdicts_of(calibration.law, modes.descriptions, dataset.seeds.size());
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
   modes.claims = claims_of(shown, calibration.law, modes.descriptions, options.steady_from);
   watch.end();
   const OrderedJson origin = provenance(execution);
+  write_fitted_paths(output / "fitted_paths.json", fitted_paths(calibration.law, shown, execution), origin);
   write_calibration(output / "calibration.json", calibration, options, modes, origin);
   write_parameters(output / "parameters.json", {calibration.law, Json(origin)});
   for (const fit::Stage& stage : calibration.stages) {
@@ -139,7 +154,9 @@ fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Exec
 Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const fs::path& output,
                           const Execution& execution, dem::RunCounts& counts) {
   const dem::RunStore store(output, "runs");
-  Dataset dataset = dem::run_planned(plan(spec), Json(dem::spec_to_json(spec)), folder, store, execution, counts);
+  const std::vector<dem::PlannedTest> tests = plan(spec);
+  Dataset dataset = dem::run_planned(tests, Json(dem::spec_to_json(spec)), folder, store, execution, counts);
+  dem::write_pictures(folder, tests, store, execution.threads);
   log_warnings(dataset, execution.watch);
   return dataset;
 }
@@ -156,6 +173,7 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
   if (input.dataset) {
     result.dataset = adopt(*input.dataset, input.dataset_folder, folder);
     adopt_rehearsals(input.dataset_folder, folder);
+    dem::adopt_pictures(input.dataset_folder, folder);
     log_warnings(result.dataset, execution.watch);
   } else {
     result.dataset = simulate_data_set(*input.spec, folder, output, execution, result.counts);

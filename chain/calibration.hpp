@@ -1,6 +1,6 @@
 #pragma once
 // From a spec, or from a data set that is there, to the calibrated law and the folder of a calibration:
-//   spec.resolved.json, runs/, dataset/, calibration.json, parameters.json       (docs/formats.md)
+//   spec.resolved.json, runs/, dataset/, calibration.json, fitted_paths.json, parameters.json       (docs/formats.md)
 
 #include <filesystem>
 #include <optional>

@@ -214,7 +214,8 @@ void add_path_warnings(predict::PredictionFolder& content) {
   const auto spins = [](const PathSegment& segment) { return !segment.spin.isZero(0); };
   if (std::ranges::any_of(content.path.segments, spins)) {
     content.warnings.emplace_back(
-        "the path spins, which nothing that was calibrated or rehearsed does; how far the law is off there is not known");
+        "the path spins, which nothing that was calibrated or rehearsed does; how far the law is off there is not "
+        "known");
   }
 }
 

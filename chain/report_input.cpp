@@ -34,26 +34,41 @@ std::string calibrate_command(const fs::path& dir) {
   return fmt::format("grainlaw calibrate SPEC.json -o {}", dir.string());
 }
 
-/// Folders below predictions/, by name.
-std::vector<fs::path> prediction_folders(const fs::path& dir) {
+/// Folders below `dir`, by name.
+std::vector<fs::path> folders_of(const fs::path& dir) {
   std::vector<fs::path> folders;
   std::error_code absent;
-  for (const auto& entry : fs::directory_iterator(dir / "predictions", absent)) {
+  for (const auto& entry : fs::directory_iterator(dir, absent)) {
     if (entry.is_directory()) folders.push_back(entry.path());
   }
   std::sort(folders.begin(), folders.end());
   return folders;
 }
 
-/// No prediction is an error, unless the parameters allow none: then the page is what shows why.
-void check_predictions(const CalibratedLaw& law, const fs::path& dir, const std::string& command, ReportInput& input) {
+/// Why there is no prediction, or what makes one.
+std::string reason_for_none(const CalibratedLaw& law, const std::string& command) {
   try {
     require_parameters(law, Rung::reduced, "parameters.json");
   } catch (const InvalidInput& error) {
-    input.warnings.push_back(std::string("No prediction can be made: ") + error.what());
-    return;
+    return std::string("No prediction can be made: ") + error.what();
   }
-  throw InvalidInput(fmt::format("{} holds no prediction; make one with: {}", (dir / "predictions").string(), command));
+  return fmt::format("No path that the fit never saw has been predicted. Make a prediction beside new runs with: {}",
+                     command);
+}
+
+/// Those that compare settings; other studies have no figure here.
+void add_studies(const fs::path& dir, ReportInput& input) {
+  for (const fs::path& folder : folders_of(dir / "studies")) {
+    const fs::path file = folder / "study.json";
+    if (!fs::exists(file)) continue;
+    const Json document = read_json(file, JsonSource::own);
+    try {
+      if (document.contains("settings"))
+        input.studies.emplace_back(folder.filename().string(), study_from_json(document));
+    } catch (const Json::exception& error) {
+      throw InvalidInput(fmt::format("{}: is no study.json: {}", file.string(), error.what()));
+    }
+  }
 }
 
 void add_dataset(Dataset dataset, const std::string& expected_digest, ReportInput& input) {
@@ -88,9 +103,15 @@ ReportInput read_report_input(const fs::path& dir) {
   add_dataset(with_remedy(calibrate, [&] { return read_dataset(dir / "dataset"); }), parameters.law.dataset_digest,
               input);
   add_facts(parameters.provenance, "", "parameters.json", input.provenance);
+  input.pictures = with_remedy(calibrate, [&] { return dem::read_pictures(dir / "dataset"); });
+  input.calibrate_command =
+      fmt::format("grainlaw calibrate --dataset {} -o {}", (dir / "dataset").string(), dir.string());
+  input.fitted_paths =
+      with_remedy(calibrate, [&] { return read_fitted_paths(dir / "fitted_paths.json", parameters.law); });
 
-  const std::vector<fs::path> folders = prediction_folders(dir);
-  if (folders.empty()) check_predictions(parameters.law, dir, predict_into + "NAME", input);
+  add_studies(dir, input);
+  const std::vector<fs::path> folders = folders_of(dir / "predictions");
+  if (folders.empty()) input.no_predictions = reason_for_none(parameters.law, predict_into + "NAME");
   const std::string digest = sha256_of_file(dir / "parameters.json");
   for (const fs::path& folder : folders) {
     const std::string name = folder.filename().string();
@@ -125,6 +146,13 @@ std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction)
     for (const DatasetTest& test : prediction.dem->tests) records.push_back(test.record);
   }
   return records;
+}
+
+std::string fact_of(const ReportInput& input, const std::string& what, const std::string& file) {
+  for (const Fact& fact : input.provenance) {
+    if (fact.what == what && std::ranges::find(fact.files, file) != fact.files.end()) return fact.value;
+  }
+  return "";
 }
 
 std::vector<Misfit> coupled_misfits(const ReportInput& input) {

@@ -6,6 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include "chain/fitted_paths.hpp"
+#include "chain/studies/settings_study.hpp"
+#include "dem/runs/pictures.hpp"
 #include "fit/calibrate.hpp"
 #include "fit/published/verdicts.hpp"
 #include "model/vocabulary/test_record.hpp"
@@ -25,13 +28,20 @@ struct ReportInput {
   fit::Calibration calibration;
   fit::ModeComparison modes;                           ///< beside what was published
   std::vector<predict::PredictionFolder> predictions;  ///< by name
-  std::vector<Fact> provenance;                        ///< commands, versions, seconds
-  std::vector<Fact> spec;                              ///< of the data set, resolved; empty when unknown
-  std::vector<std::string> warnings;                   ///< files that do not belong together
-  std::vector<std::string> run_warnings;               ///< "test: warning" of the DEM runs
+  std::string no_predictions;            ///< why there are none, or the command that makes them; else empty
+  std::vector<FittedPath> fitted_paths;  ///< the law along the shear tests
+  std::vector<std::pair<std::string, SettingsStudy>>
+      studies;                            ///< of studies/NAME/study.json that compare settings, by name
+  std::string calibrate_command;          ///< that makes the folder's files anew from its data set
+  std::optional<dem::ShearPictures> pictures;  ///< of one packing; older data sets have none
+  std::vector<Fact> provenance;           ///< commands, versions, seconds
+  std::vector<Fact> spec;                 ///< of the data set, resolved; empty when unknown
+  std::vector<std::string> warnings;      ///< files that do not belong together
+  std::vector<std::string> run_warnings;  ///< "test: warning" of the DEM runs
 };
 
-/// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it.
+/// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it; predictions
+/// may be missing, and what earlier programs did not write.
 ReportInput read_report_input(const std::filesystem::path& dir);
 
 /// parameters.json alone, as far as the table of parameters goes. Throws likewise.
@@ -39,6 +49,9 @@ CalibratedLaw read_fitted_parameters(const std::filesystem::path& dir);
 
 /// The DEM runs of a prediction; empty when it was made without --dem.
 std::vector<TestRecord> dem_records(const predict::PredictionFolder& prediction);
+
+/// Value of the provenance's line `what` as `file` says it; empty without.
+std::string fact_of(const ReportInput& input, const std::string& what, const std::string& file);
 
 /// A residual of the coupled fit and the test that it is of.
 struct Misfit {

@@ -16,6 +16,8 @@ foreach(room IN ITEMS model dem fit predict chain)
 endforeach()
 install(EXPORT grainlaw-targets NAMESPACE grainlaw:: DESTINATION ${installed_package})
 
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT program)  # app/CMakeLists.txt
+
 list(JOIN sundials_components " " sundials_components_text)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/grainlaw-config.cmake.in
   ${PROJECT_BINARY_DIR}/grainlaw-config.cmake INSTALL_DESTINATION ${installed_package}
@@ -26,8 +28,20 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/grainlaw-config-version.c
 install(FILES ${PROJECT_BINARY_DIR}/grainlaw-config.cmake ${PROJECT_BINARY_DIR}/grainlaw-config-version.cmake
   DESTINATION ${installed_package})
 
-install(TARGETS grainlaw RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS grainlaw RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 
 # As in the source tree, so that links between the pages hold; the schemas of the input files are in docs/schemas.
-install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+
+# cpack -G DEB: the program with completions, manual and documentation; the libraries are for those who build.
+set(CPACK_PACKAGE_CONTACT "the authors of CITATION.cff <grainlaw@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME grainlaw)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+include(CPack)

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
+#include <utility>
 
 #include "fit/data/data_set.hpp"
 #include "fit/data/outliers.hpp"
@@ -99,10 +101,31 @@ void moderate_errors(const CalibrationOptions& options, Calibration& calibration
     if (says_nothing(law, i)) law.estimates[i].note = fmt::format("not determined by {} packings", size.packings);
   }
   if (size.spheres < kLeastParticles * static_cast<double>(size.packings))
-    calibration.warnings.push_back(fmt::format(
-        "packings of {:.0f} spheres: what a size below {:.0f} biases is in no interval (jamming "
-        "densities first: docs/theory/fit.md, Moderated variances)",
-        size.spheres / size.packings, kLeastParticles));
+    calibration.warnings.push_back(
+        fmt::format("packings of {:.0f} spheres: what a size below {:.0f} biases is in no interval (jamming "
+                    "densities first: docs/theory/fit.md, Moderated variances)",
+                    size.spheres / size.packings, kLeastParticles));
+}
+
+/// Where a stage lies in the whole fit by its usual share of the time, of which the coupled stages take nearly all.
+std::pair<double, double> share_of(const std::string& stage) {
+  if (stage == "evolution") return {0.05, 0.6};
+  if (stage == "lode") return {0.6, 0.62};
+  if (stage == "memory") return {0.62, 1};
+  return {0, 0.05};
+}
+
+/// `control`, told how far the fit is as a whole: never back, within a stage by its iterations.
+RunControl of_whole(const RunControl& control) {
+  constexpr double kIterations = 15;  // after which half of a stage is taken as done
+  if (!control.report) return control;
+  const auto tell = [report = control.report, so_far = std::make_shared<double>(0)](Progress progress) {
+    const auto [begin, end] = share_of(progress.stage);
+    const double fraction = begin + (end - begin) * progress.work / (progress.work + kIterations);
+    progress.fraction = *so_far = std::max(*so_far, fraction);
+    report(progress);
+  };
+  return {tell, control.stop};
 }
 
 }  // namespace
@@ -116,8 +139,9 @@ PackingCount size_of(const std::vector<TestRecord>& tests) {
 }
 
 Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOptions& options,
-                      const RunControl& control) {
+                      const RunControl& run_control) {
   check(options);
+  const RunControl control = of_whole(run_control);
   const DataSet data = check_and_sort(tests);
   Calibration calibration = nothing_known();
   calibration.law.coupling = options.coupling;

@@ -39,7 +39,13 @@ std::vector<LeftOut> leave_one_out(const std::vector<TestRecord>& tests, const C
   if (seeds.size() < 2) return fits;
   CalibrationOptions plain = options;
   plain.profiles = false;
-  for (const std::uint64_t seed : seeds) fits.push_back(without(seed, tests, plain, control));
+  RunControl one = control;  // told of all of them together
+  if (control.report)
+    one.report = [&](Progress progress) {
+      progress.fraction = (static_cast<double>(fits.size()) + progress.fraction) / static_cast<double>(seeds.size());
+      control.report(progress);
+    };
+  for (const std::uint64_t seed : seeds) fits.push_back(without(seed, tests, plain, one));
   return fits;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "model/files/one_line.hpp"
+#include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 #include "packing_prior_text.hpp"
 
@@ -70,7 +71,10 @@ VariancePrior prior_from_json(const Json& json, const std::string& name) {
 }
 
 VariancePrior read_prior(const std::filesystem::path& file) {
-  return prior_from_json(read_json(file, JsonSource::own), one_line(file.string(), 200));
+  const Json document = read_json(file, JsonSource::own);
+  const std::string name = one_line(file.string(), 200);
+  check_schema(document, Schema::prior, name);
+  return prior_from_json(document, name);
 }
 
 const VariancePrior& shipped_prior() {

@@ -2,6 +2,8 @@
 // the cheapest plan for a prediction.
 
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
+#include "app/terminal/forecast_text.hpp"
 #include "app/terminal/result_text.hpp"
 #include "chain/planning/target_calibration.hpp"
 #include "fit/prior_file.hpp"
@@ -22,7 +24,8 @@ struct CalibrateOptions {
   fit::Loss loss = fit::Loss::squares;
   int starts = 1;       ///< of the coupled fits
   bool checks = false;  ///< fits without one packing, likelihood profiles
-  std::string prior;    ///< prior.json of the errors, or "none"; empty: the built-in one
+  bool dry_run = false;
+  std::string prior;  ///< prior.json of the errors, or "none"; empty: the built-in one
 };
 
 ExitCode calibrate_to_target(const CalibrateOptions& options, chain::CalibrationInput input,
@@ -34,6 +37,10 @@ ExitCode calibrate_to_target(const CalibrateOptions& options, chain::Calibration
   input.spec->coupling = to_string(fit_options.coupling);
   const auto target =
       chain::read_target(*options.target_error, options.target_path, options.quantities, options.max_cost);
+  if (options.dry_run) {
+    const auto pilot = chain::forecast_of_pilot(target, *input.spec, options.output, session);
+    return say_forecast(options.spec.string(), pilot, session);
+  }
   const chain::TargetCalibration result =
       chain::calibrate_for(target, *input.spec, options.spec.string(), fit_options, options.output, session);
   print_result(session.json ? json_text(result.document) : text_of(result, target, options.output));
@@ -52,6 +59,9 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   else if (!options.prior.empty())
     fit_options.prior = fit::read_prior(options.prior);
   if (options.target_error) return calibrate_to_target(options, input, fit_options, session);
+  if (options.dry_run)
+    return say_forecast((options.dataset.empty() ? options.spec : options.dataset).string(),
+                        chain::forecast(input, options.output, session), session);
   const chain::CalibrationResult result = chain::calibrate(input, fit_options, options.output, session);
   print_result(session.json ? json_text(summary_of(result, options.output, session))
                             : text_of(result, options.output, session));
@@ -62,39 +72,47 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
 
 Task declare_calibrate(CLI::App& command) {
   const auto options = std::make_shared<CalibrateOptions>();
-  command.add_option("SPEC", options->spec, "SPEC.json; may be left out with --dataset");
-  command.add_option("-o,--output", options->output, "folder of the calibration")->required();
-  command.add_option("--dataset", options->dataset, "fit this data set without running DEM");
+  command.add_option("SPEC", options->spec, "SPEC.json; may be left out with --dataset")->type_name("FILE");
+  command.add_option("-o,--output", options->output, "folder of the calibration")->required()->type_name("DIR");
+  command.add_option("--dataset", options->dataset, "fit this data set without running DEM")->type_name("DIR");
+  add_dry_run(command, options->dry_run);
   CLI::Option* target = command.add_option(
       "--target-error", options->target_error,
       "plan the cheapest runs after which the prediction along --for is known to this, e.g. 0.02: half width of its "
-      "95 % "
-      "band with what rate, step and size do, over the largest value; overrides N, seeds, rate, step, densities and "
-      "shear strain of SPEC");
-  target->check(CLI::Range(1e-4, 1.0));
-  command.add_option("--for", options->target_path, "PATH.json of that prediction")->needs(target);
-  command.add_option("--quantity", options->quantities, "what must be known: P_star, s_par, F_par; default: all")
+      "95 % band with what rate, step and size do, over the largest value; overrides N, seeds, rate, step, densities "
+      "and shear strain of SPEC");
+  target->check(between(1e-4, 1))->type_name("ERROR");
+  command.add_option("--for", options->target_path, "PATH.json of that prediction")->needs(target)->type_name("FILE");
+  const std::vector<std::string> quantities{"P_star", "s_par", "F_par"};
+  command.add_option("--quantity", options->quantities, "what must be known; default: all")
       ->needs(target)
       ->delimiter(',')
-      ->check(CLI::IsMember({"P_star", "s_par", "F_par"}));
+      ->type_name(choice_type(quantities))
+      ->check(CLI::Validator(
+          [quantities](const std::string& text) {
+            chosen("--quantity", text, quantities);
+            return std::string();
+          },
+          ""));
   command.add_option("--max-cost", options->max_cost, "seconds that the pilot and all runs of the plan may take")
       ->needs(target)
-      ->check(CLI::Range(0.0, 1e9));
-  command.add_option("--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's")
-      ->transform(by_name<Coupling>());
-  command
-      .add_option("--loss", options->loss,
-                  "squares (default) or huber: rows that are far off, in units of their scatter, count for less")
-      ->transform(by_name<fit::Loss>());
+      ->check(between(0, 1e9))
+      ->type_name("SECONDS");
+  add_choice<Coupling>(command, "--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's");
+  add_choice<fit::Loss>(command, "--loss", options->loss,
+                        "squares (default) or huber: rows that are far off, in units of their scatter, count for less");
   command.add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
-      ->check(CLI::Range(1, 10000))
+      ->check(between(1, 10000))
+      ->type_name("N")
       ->capture_default_str();
   command.add_flag("--checks", options->checks,
                    "fits without each packing in turn, and likelihood profiles of doubtful parameters; takes several "
                    "times as long as the fit");
-  command.add_option("--prior", options->prior,
-                     "prior.json of study prior, by which the errors of few packings are moderated, or none; default: "
-                     "the built-in one");
+  command
+      .add_option("--prior", options->prior,
+                  "prior.json of study prior, by which the errors of few packings are moderated, or none; default: "
+                  "the built-in one")
+      ->type_name("FILE");
   return [options](Session& session) { return calibrate(*options, session); };
 }
 

@@ -3,12 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
-#include <map>
-#include <string>
 
 #include "app/exit_code.hpp"
 #include "app/terminal/session.hpp"
-#include "model/vocabulary/enum_names.hpp"
 
 namespace grainlaw::app {
 
@@ -19,7 +16,7 @@ struct Command {
   const char* name;
   const char* description;
   Task (*declare)(CLI::App&);
-  bool simulates;  ///< DEM: takes --resume and --checkpoint
+  enum class Kind { says, computes, simulates } kind;  ///< `says`: no options of work; `simulates`: DEM
 };
 
 Task declare_simulate(CLI::App& command);
@@ -32,13 +29,9 @@ Task declare_study_fit(CLI::App& command);
 Task declare_study_chain(CLI::App& command);
 Task declare_study_bands(CLI::App& command);
 Task declare_study_prior(CLI::App& command);
-
-/// The names of an enum as values of an option.
-template <NamedEnum E>
-CLI::CheckedTransformer by_name() {
-  std::map<std::string, E> values;
-  for (const E value : kValues<E>) values[to_string(value)] = value;
-  return CLI::CheckedTransformer(values);
-}
+Task declare_init(CLI::App& command);
+Task declare_check(CLI::App& command);
+Task declare_completion(CLI::App& command);
+Task declare_man(CLI::App& command);
 
 }  // namespace grainlaw::app

@@ -2,6 +2,8 @@
 // of the same path: with --dem in the engine on new packings, with --against finished ones.
 
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
+#include "app/terminal/forecast_text.hpp"
 #include "app/terminal/result_text.hpp"
 #include "chain/prediction.hpp"
 #include "chain/rehearsals.hpp"
@@ -24,6 +26,7 @@ struct PredictOptions {
   fs::path spec;                            ///< SPEC of the packings; empty: spec.resolved.json beside `parameters`
   fs::path store;                           ///< folder with the runs; empty: that of `parameters`
   bool rehearse = false;                    ///< keep the runs as a rehearsal of the law
+  bool dry_run = false;
 };
 
 chain::NewRuns new_runs(const PredictOptions& options) {
@@ -49,6 +52,7 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   input.model = options.model;
   input.initial = options.initial;
   if (options.dem) input.new_runs = new_runs(options);
+  if (options.dry_run) return say_forecast(options.path.string(), chain::forecast(input, session), session);
   if (!options.against.empty()) {
     input.finished_runs = chain::read_runs_of(input.path.path, options.against);
     if (options.rehearse) keep_as_rehearsal(options, options.against, session, input);
@@ -68,26 +72,27 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
 
 Task declare_predict(CLI::App& command) {
   const auto options = std::make_shared<PredictOptions>();
-  command.add_option("PARAMETERS", options->parameters, "parameters.json of a calibration")->required();
-  command.add_option("PATH", options->path, "PATH.json")->required();
-  command.add_option("-o,--output", options->output, "folder of the prediction")->required();
+  command.add_option("PARAMETERS", options->parameters, "parameters.json of a calibration")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("PATH", options->path, "PATH.json")->required()->type_name("FILE");
+  command.add_option("-o,--output", options->output, "folder of the prediction")->required()->type_name("DIR");
+  add_dry_run(command, options->dry_run);
   CLI::Option* dem = command.add_flag("--dem", options->dem, "run the path in the engine on new packings and compare");
   command
       .add_option("--against", options->against,
                   "compare with finished runs of the path: the folder of a data set, or of a prediction with --dem")
-      ->excludes(dem);
+      ->excludes(dem)
+      ->type_name("DIR");
+  add_choice<Rung>(command, "--model", options->model, "rung of the law; default: those that are calibrated");
+  add_choice<predict::Initial>(command, "--initial", options->initial,
+                               "start from the law or from measured values; default: law, with --dem both");
+  add_seeds(command, "--seeds", options->seeds, "of the new packings, e.g. 201-205 or 1,3,7-9");
   command
-      .add_option("--model", options->model,
-                  "rung of the law: reduced, evolution or memory; default: those that are calibrated")
-      ->transform(by_name<Rung>());
-  command
-      .add_option("--initial", options->initial,
-                  "start from the law or from measured values; default: law, with --dem both")
-      ->transform(by_name<predict::Initial>());
-  command.add_option("--seeds", options->seeds, "seeds of the new packings, e.g. 11,12")->delimiter(',');
-  command.add_option("--spec", options->spec,
-                     "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
-  command.add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS");
+      .add_option("--spec", options->spec, "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS")
+      ->type_name("FILE");
+  command.add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS")
+      ->type_name("DIR");
   command.add_flag(
       "--rehearse", options->rehearse,
       "keep the runs of --against or --dem as a rehearsal in PARAMETERS: how far the law is off on them widens "

@@ -1,18 +1,23 @@
-// grainlaw report DIR -o report.html: one page about a calibration and its predictions.
+// grainlaw report DIR -o report.html: one page about a calibration and its predictions; --json: its numbers.
 
 #include "app/report/report.hpp"
 #include "app/commands/commands.hpp"
 #include "model/files/json_document.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 
 Task declare_report(CLI::App& command) {
-  const auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>();
-  command.add_option("DIR", *folder, "folder of a calibration")->required();
-  command.add_option("-o,--output", *html, "file of the page, e.g. report.html")->required();
-  return [folder, html](Session& session) {
-    write_report(*folder, *html);
-    print_result(session.json ? json_text({{"report", html->string()}})
+  const auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>(),
+             other = std::make_shared<std::filesystem::path>();
+  command.add_option("DIR", *folder, "folder of a calibration")->required()->type_name("DIR");
+  command.add_option("-o,--output", *html, "file of the page, e.g. report.html; not needed with --json")->type_name("FILE");
+  command.add_option("--compare", *other, "folder of another calibration, set beside this one")->type_name("DIR");
+  return [folder, html, other](Session& session) {
+    if (html->empty() && !session.json)
+      throw InvalidInput("report: -o FILE is missing, the page's file; or --json for its numbers on standard output");
+    if (!html->empty()) write_report(*folder, *html, *other);
+    print_result(session.json ? json_text(report_json(*folder, *other))
                               : summary_table(*folder) + "\n" + html->string() + "\n");
     return ExitCode::ok;
   };

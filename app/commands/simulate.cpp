@@ -1,6 +1,7 @@
 // grainlaw simulate TEST.json -o DIR: one packing, or one element test.
 
 #include "app/commands/commands.hpp"
+#include "app/terminal/forecast_text.hpp"
 #include "app/terminal/result_text.hpp"
 #include "dem/runs/simulation.hpp"
 
@@ -10,10 +11,14 @@ namespace {
 struct SimulateOptions {
   std::filesystem::path test;    ///< TEST.json
   std::filesystem::path output;  ///< folder for series, states, summary and the store of runs
+  bool dry_run = false;
 };
 
 ExitCode simulate(const SimulateOptions& options, Session& session) {
-  const dem::SimulationResult simulation = dem::simulate(dem::read_test(options.test), options.output, session);
+  const dem::TestFile test = dem::read_test(options.test);
+  if (options.dry_run)
+    return say_forecast(options.test.string(), chain::forecast(test, options.output, session), session);
+  const dem::SimulationResult simulation = dem::simulate(test, options.output, session);
   print_result(session.json ? json_text(simulation.summary) : text_of(simulation, options.output));
   return ExitCode::ok;
 }
@@ -22,8 +27,11 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
 
 Task declare_simulate(CLI::App& command) {
   const auto options = std::make_shared<SimulateOptions>();
-  command.add_option("TEST", options->test, "TEST.json")->required();
-  command.add_option("-o,--output", options->output, "folder for series, states and summary")->required();
+  command.add_option("TEST", options->test, "TEST.json")->required()->type_name("FILE");
+  command.add_option("-o,--output", options->output, "folder for series, states and summary")
+      ->required()
+      ->type_name("DIR");
+  add_dry_run(command, options->dry_run);
   return [options](Session& session) { return simulate(*options, session); };
 }
 

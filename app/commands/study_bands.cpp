@@ -31,10 +31,14 @@ ExitCode study_bands(const BandsOptions& options, Session& session) {
 
 Task declare_study_bands(CLI::App& command) {
   const auto options = std::make_shared<BandsOptions>();
-  command.add_option("FOLDER", options->folder, "folder of a calibration with rehearsals")->required();
-  command.add_option("--runs", options->runs,
-                     "more rehearsals: folders of data sets, or of predictions with --dem, of one path each");
-  command.add_option("-o,--output", options->output, "folder for study.json")->required();
+  command.add_option("FOLDER", options->folder, "folder of a calibration with rehearsals")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("--runs", options->runs,
+                  "more rehearsals: folders of data sets, or of predictions with --dem, of one path each")
+      ->type_name("DIR");
+  command.add_option("-o,--output", options->output, "folder for study.json")->required()->type_name("DIR");
   return [options](Session& session) { return study_bands(*options, session); };
 }
 

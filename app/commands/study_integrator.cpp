@@ -2,6 +2,7 @@
 
 #include "app/commands/commands.hpp"
 #include "app/commands/finish_study.hpp"
+#include "app/commands/options.hpp"
 #include "model/files/output.hpp"
 #include "model/parameters_file.hpp"
 #include "predict/studies/integrator_study.hpp"
@@ -42,13 +43,17 @@ ExitCode study_integrator(const IntegratorOptions& options, Session& session) {
 
 Task declare_study_integrator(CLI::App& command) {
   const auto options = std::make_shared<IntegratorOptions>();
-  command.add_option("-o,--output", options->output, "folder for study.json and work_precision.svg")->required();
+  command.add_option("-o,--output", options->output, "folder for study.json and work_precision.svg")
+      ->required()
+      ->type_name("DIR");
   command.add_option("--parameters", options->parameters, "parameters.json; default: the published values");
   command.add_option("--repeats", options->repeats, "repeats of each path, of which the least time counts")
-      ->check(CLI::Range(1, 1000000))
+      ->check(between(1, 1000000))
+      ->type_name("N")
       ->capture_default_str();
   command.add_option("--paths", options->paths, "paths of the batch over all threads")
-      ->check(CLI::Range(1, 10000000))
+      ->check(between(1, 10000000))
+      ->type_name("N")
       ->capture_default_str();
   return [options](Session& session) { return study_integrator(*options, session); };
 }

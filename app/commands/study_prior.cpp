@@ -19,7 +19,7 @@ struct PriorOptions {
 };
 
 std::string text_of(const chain::PriorStudy& study, const fs::path& file) {
-  std::string text = "Calibrations of few packings: how often the intervals hold what all packings find\n\n";
+  std::string text = "Calibrations of few packings: how often intervals hold what all packings find\n\n";
   text += fmt::format("{:>10} {:>9} {:>13} {:>7} {:>10} {:>12} {:>10}\n", "particles", "packings", "calibrations",
                       "ratio", "moderated", "unmoderated", "narrower");
   for (const chain::FewPackings& f : study.few)
@@ -28,7 +28,7 @@ std::string text_of(const chain::PriorStudy& study, const fs::path& file) {
   text += "\nBiased by the size, beyond chance\n\n";
   for (const chain::SizeEffect& s : study.sizes) {
     if (s.biased)
-      text += fmt::format("{:<28} {:>6.0f}: {:>10.4g} ± {:<10.2g} {:>6.0f}: {:>10.4g} ± {:<10.2g} {:>6.1f}\n",
+      text += fmt::format("{}\n  {:>8.0f}: {:>10.4g} ± {:<10.2g} {:>8.0f}: {:>10.4g} ± {:<10.2g} {:>6.1f}\n",
                           s.parameter, s.particles, s.value, s.standard_error, s.larger_particles, s.larger_value,
                           s.larger_standard_error, s.distance);
   }
@@ -52,9 +52,12 @@ ExitCode study_prior(const PriorOptions& options, Session& session) {
 
 Task declare_study_prior(CLI::App& command) {
   const auto options = std::make_shared<PriorOptions>();
-  command.add_option("MANY", options->many, "folder of a data set or calibration of 16 packings or more")->required();
-  command.add_option("OTHERS", options->others, "likewise, of the same tests on packings of other sizes");
-  command.add_option("-o,--output", options->output, "folder for prior.json")->required();
+  command.add_option("MANY", options->many, "folder of a data set or calibration of 16 packings or more")
+      ->required()
+      ->type_name("DIR");
+  command.add_option("OTHERS", options->others, "likewise, of the same tests on packings of other sizes")
+      ->type_name("DIR");
+  command.add_option("-o,--output", options->output, "folder for prior.json")->required()->type_name("DIR");
   return [options](Session& session) { return study_prior(*options, session); };
 }
 

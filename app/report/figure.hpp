@@ -29,6 +29,9 @@ struct Series {
   double marker_size = 3;    ///< half of its width [px]
   Line line = Line::none;
   double line_width = 1.8;  ///< [px]
+  /// Shows and hides it together with others of the figure, e.g. "evolution", "seed 3"; empty: always shown.
+  std::string toggle;
+  bool initially_hidden = false;  ///< shown once its toggle is chosen; alike in all series of a toggle
 };
 
 struct AxisStyle {
@@ -52,10 +55,19 @@ struct Figure {
   std::string description;                ///< what a reader sees, for screen readers
   Text caption = {};                      ///< below the figure
   std::vector<std::string> sources = {};  ///< files that it was drawn from, relative to the report's directory
+  std::string command = {};               ///< that made these files; empty: unknown
   std::vector<Panel> panels = {};
   int columns = 1;
-  double panel_height = 250;  ///< [px] of a figure 960 px wide
+  double panel_height = 250;  ///< [px] of a figure 1000 px wide
   bool shared_axes = false;   ///< same ranges in all panels, numbers on the outer ones only
+};
+
+/// A picture that is no plot: ready panels, two in a row, without numbers to point at.
+struct Drawing {
+  std::string id, title, description;  ///< as of a figure
+  Text caption;
+  std::vector<std::string> sources;
+  std::vector<std::string> panels;  ///< <svg class="p"> each
 };
 
 }  // namespace grainlaw::app::report

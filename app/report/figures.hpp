@@ -15,10 +15,12 @@ Figure scaled_density_figure(const chain::ReportInput& input);
 /// Figs. 1, 4 to 8 and 10 of the paper: every run that they show, ISO, UNI and D2 from both branches.
 Figure modes_figure(const chain::ReportInput& input);
 
-/// s_par (Eq. 17) against eps_dev, a panel per density.
+/// s_par against eps_dev, a panel per mode and density, with the recommended rung along the same path.
 Figure stress_ratio_figure(const chain::ReportInput& input);
-/// F_par (Eq. 18) likewise.
+/// F_par likewise.
 Figure fabric_figure(const chain::ReportInput& input);
+/// P* over that of ISO unloading likewise.
+Figure sheared_pressure_figure(const chain::ReportInput& input);
 
 /// s_max, beta_s, F_max, beta_F against nu with Eq. (20).
 Figure shear_law_figure(const chain::ReportInput& input);
@@ -26,12 +28,17 @@ Figure shear_law_figure(const chain::ReportInput& input);
 /// Misfit of P*, s_par, F_par per calibration test of the coupled fit.
 Figure residual_figure(const chain::ReportInput& input);
 
-/// P*, s_par, F_par against eps_dev of one prediction and the DEM runs of its path, and their difference.
-Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_t index);
+/// P* (over that of ISO unloading at the same density where it has one), s_par, F_par against eps_dev of one prediction by the
+/// recommended rung with its bands, others behind toggles, and of the DEM runs of its path; below, the residual in units of the band.
+Figure prediction_figure(const predict::PredictionFolder& prediction, const CalibratedLaw& law, std::size_t index);
+std::string prediction_id(std::size_t index);  ///< of that figure
 
 /// E_kin/E_pot, |energy residual|, inertial number against nu on the isotropic branches.
 Figure preparation_quality_figure(const chain::ReportInput& input);
 /// The same over the course of the element tests.
 Figure shear_quality_figure(const chain::ReportInput& input);
+
+/// A packing before and after shear, and the directions of its contacts and forces.
+Drawing packing_drawing(const dem::ShearPictures& pictures);
 
 }  // namespace grainlaw::app::report

@@ -17,8 +17,9 @@ void add_isotropic_symbols(Panel& panel, const chain::ReportInput& input, const 
     if (!is_isotropic_unloading(test)) continue;
     const std::uint64_t seed = test.packing.seed;
     const Text label = name == nullptr ? Text{} : plain(name + std::to_string(seed));
-    panel.series.push_back(through(open_symbols(label, Colour::blue, marker_of(index_of(seeds, seed)), 2),
-                                   symbol_rows(test, kRowsShown), &Observation::nu, y));
+    Series style = open_symbols(label, Colour::blue, marker_of(index_of(seeds, seed)), 2);
+    style.toggle = "seed " + std::to_string(seed);
+    panel.series.push_back(through(style, symbol_rows(test, kRowsShown), &Observation::nu, y));
   }
 }
 
@@ -50,8 +51,9 @@ Range shown_range(const chain::ReportInput& input) {
 template <class Function>
 void add_law(Panel& panel, const Range& range, const char* name, Colour colour, Line line,
              const LawParameters<double>& p, const Function& of) {
-  panel.series.push_back(
-      curve(line_of(plain(name), colour, line), range.from, range.to, [&](double nu) { return of(p, nu); }));
+  Series style = line_of(plain(name), colour, line);
+  if (line == Line::dashed) style.toggle = "published";
+  panel.series.push_back(curve(style, range.from, range.to, [&](double nu) { return of(p, nu); }));
 }
 
 Panel density_panel(const char* label, const Range& range) {

@@ -95,7 +95,9 @@ Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quan
   }
   const auto add = [&](const char* name, Colour colour, Line line, const auto& of_density) {
     const Range20 range = sheared_range(calibration);
-    panel.series.push_back(curve(line_of(plain(name), colour, line), range.from, range.to, of_density));
+    Series style = line_of(plain(name), colour, line);
+    if (line != Line::solid) style.toggle = line == Line::dashed ? "published" : "before the coupled fit";
+    panel.series.push_back(curve(style, range.from, range.to, of_density));
   };
   const Law published = published_parameters(), staged = staged_parameters(calibration);
   const Law& coupled = calibration.law.parameters;

@@ -14,6 +14,12 @@ Series thin_line(const std::string& label, Colour colour, Line line) {
   return line_of(notation(label), colour, line, 1);
 }
 
+Series published_line(const std::string& mode, Colour colour) {
+  Series line = line_of(plain(mode + ", published"), colour, Line::dashed);
+  line.toggle = "published";
+  return line;
+}
+
 /// Whether all of the test is uniaxial, loading and unloading.
 bool is_uniaxial_cycle(const TestRecord& test) {
   const auto& segments = test.path.segments;
@@ -89,8 +95,7 @@ void add_branches(Panel& panel, const chain::ReportInput& input, double Observat
   if (!(from < to)) return;
   const auto add_published = [&](const char* mode, Colour colour) {
     const LawParameters<double> p = published_parameters(mode);
-    panel.series.push_back(curve(line_of(plain(std::string(mode) + ", published"), colour, Line::dashed),
-                                 std::max(from, p.isotropic.coordination.nu_c), to,
+    panel.series.push_back(curve(published_line(mode, colour), std::max(from, p.isotropic.coordination.nu_c), to,
                                  [&](double nu) { return law.of(p, nu); }));
   };
   add_published("ISO", Colour::ink);
@@ -112,7 +117,7 @@ Panel scaled_panel(const chain::ReportInput& input) {
     }
   };
   const auto add_published = [&](const std::string& mode, const Pressure<double>& pressure, Colour colour) {
-    panel.series.push_back(curve(line_of(plain(mode + ", published"), colour, Line::dashed), 0, 0.22,
+    panel.series.push_back(curve(published_line(mode, colour), 0, 0.22,
                                  [&](double x) { return pressure.scaled(pressure.nu_c * std::exp(x)); }));
   };
   const auto& ours = input.calibration;

@@ -13,19 +13,21 @@ using predict::Initial, predict::PredictedCurve, predict::PredictedRow, predict:
 
 struct Predicted {
   const char* label;
-  const char* difference;
   double Observation::*measured;
   double (*of)(const PredictedRow&);
   double predict::RowBand::*band;
 };
 
 constexpr std::array<Predicted, 3> kPredicted{
-    {{"pressure {P}* [–]", "law − DEM: {P}* [–]", &Observation::P_star,
-      [](const PredictedRow& row) { return row.state.P; }, &predict::RowBand::P},
-     {"stress ratio {s}_{∥} [–]", "law − DEM: {s}_{∥} [–]", &Observation::s_par,
-      [](const PredictedRow& row) { return row.s_par; }, &predict::RowBand::s_par},
-     {"fabric {F}_{∥} [–]", "law − DEM: {F}_{∥} [–]", &Observation::F_par,
-      [](const PredictedRow& row) { return row.F_par; }, &predict::RowBand::F_par}}};
+    {{"pressure {P}* [–]", &Observation::P_star, [](const PredictedRow& row) { return row.state.P; },
+      &predict::RowBand::P},
+     {"stress ratio {s}_{∥} [–]", &Observation::s_par, [](const PredictedRow& row) { return row.s_par; },
+      &predict::RowBand::s_par},
+     {"fabric {F}_{∥} [–]", &Observation::F_par, [](const PredictedRow& row) { return row.F_par; },
+      &predict::RowBand::F_par}}};
+constexpr double kAboveJamming =
+    1.005;  // of nu_c, from where P* over that of ISO unloading is no quotient of two small numbers
+constexpr std::size_t kLinePoints = 100, kSymbolsOfARun = 36;
 
 template <class Row>
 bool strain_grows(const std::vector<Row>& rows) {
@@ -33,29 +35,52 @@ bool strain_grows(const std::vector<Row>& rows) {
   return std::is_sorted(rows.begin(), rows.end(), less);
 }
 
-/// What a prediction's figure shows over what: deviatoric strain, or the length travelled when the path turns.
+/// What a prediction's figure shows over what: deviatoric strain, or the length travelled when the path turns; and the unit of the
+/// pressure: where ISO unloading has one all along the path, that at the same density, else none.
 struct Shown {
   const PredictionFolder& prediction;
+  const LawParameters<double>& parameters;
   std::vector<TestRecord> dem;
-  bool by_strain = true;
+  bool by_strain = true, by_ratio = true;
 
   double x(const Observation& row) const { return by_strain ? row.eps_dev : row.shear_path; }
   double x(const PredictedRow& row) const { return by_strain ? row.eps_dev : row.shear_path; }
+  double unit(const Predicted& quantity, double nu) const {
+    return by_ratio && &quantity == kPredicted.data() ? parameters.isotropic.P_star(nu) : 1;
+  }
 
   Panel panel(const char* label) const {
     Panel panel = panel_of("", by_strain ? kStrainLabel : "strain path length ∫|d{ε}_{dev}| [–]", label);
-    panel.x.include = panel.y.include = 0;
+    panel.x.include = 0;
     return panel;
   }
 };
 
-Shown shown_of(const PredictionFolder& prediction) {
-  Shown shown{prediction, chain::dem_records(prediction)};
+Shown shown_of(const PredictionFolder& prediction, const CalibratedLaw& law) {
+  Shown shown{prediction, law.parameters, chain::dem_records(prediction)};
   shown.by_strain =
       std::all_of(shown.dem.begin(), shown.dem.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
       std::all_of(prediction.curves.begin(), prediction.curves.end(),
                   [](const PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
+  const double least = kAboveJamming * law.parameters.isotropic.pressure.nu_c;
+  for (const PredictedCurve& drawn : prediction.curves) {
+    for (const PredictedRow& row : drawn.prediction.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
+  }
+  for (const TestRecord& test : shown.dem) {
+    for (const Observation& row : test.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
+  }
+  shown.by_ratio = shown.by_ratio && is_known(density_curve("P_star"), law);
   return shown;
+}
+
+/// About `points` rows, evenly, and the last.
+std::vector<PredictedRow> thinned(const std::vector<PredictedRow>& rows, std::size_t points) {
+  std::vector<PredictedRow> few;
+  const std::size_t stride = std::max<std::size_t>(1, rows.size() / points);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i % stride == 0 || i + 1 == rows.size()) few.push_back(rows[i]);
+  }
+  return few;
 }
 
 /// Started from the law, a curve is the same for every seed and shown once; from measured values there is one for each.
@@ -81,96 +106,143 @@ const PredictedCurve* banded_curve(const PredictionFolder& prediction,
   return richest;
 }
 
-Series law_line(const PredictedCurve& drawn, double width = 1.8) {
+/// How a curve is drawn: the recommended one in full, others only where their toggle is chosen.
+Series law_line(const PredictedCurve& drawn, const PredictedCurve* recommended, double width) {
   const bool measured = drawn.initial == Initial::measured;
   const Colour colour = drawn.model == Rung::reduced     ? Colour::green
                         : drawn.model == Rung::evolution ? Colour::vermillion
                                                          : Colour::blue;
-  return line_of(plain(to_string(drawn.model) + (measured ? ", from measured start" : ", from the law's start")),
-                 colour, measured ? Line::dotted : Line::solid, width);
+  const bool first = recommended != nullptr && drawn.model == recommended->model && !measured;
+  Series line = line_of(plain(to_string(drawn.model) + (measured ? ", from each run's measured start"
+                                                        : first  ? ", recommended"
+                                                                 : "")),
+                        colour, measured ? Line::dotted : Line::solid, width);
+  if (!first) {
+    line.toggle = measured ? "measured start" : to_string(drawn.model);
+    line.initially_hidden = recommended != nullptr;
+  }
+  return line;
+}
+
+/// From a measured start the recommended rung alone is drawn; the table has them all.
+bool is_drawn(const PredictedCurve& drawn, const PredictedCurve* recommended) {
+  return drawn.initial == Initial::law || recommended == nullptr || drawn.model == recommended->model;
 }
 
 Panel value_panel(const Shown& shown, const Predicted& quantity) {
-  Panel panel = shown.panel(quantity.label);
+  const bool ratio = shown.by_ratio && &quantity == kPredicted.data();
+  Panel panel = shown.panel(ratio ? "{P}*/{P}*_{ISO}({ν}) [–]" : quantity.label);
+  if (ratio) {
+    panel.y.include = 1;
+  } else {
+    panel.y.include = 0;
+  }
   const auto x = [&](const auto& row) { return shown.x(row); };
-  const auto seeds = seeds_of(shown.dem);
   for (const TestRecord& test : shown.dem) {
-    const std::size_t seed = index_of(seeds, test.packing.seed);
-    panel.series.push_back(through(open_symbols(plain("DEM seed " + std::to_string(test.packing.seed)),
-                                                seed % 2 == 0 ? Colour::blue : Colour::sky, marker_of(seed), 2),
-                                   symbol_rows(test, 60), x, quantity.measured));
+    const std::string label = fmt::format("DEM, {} {}", shown.dem.size(), shown.dem.size() == 1 ? "run" : "runs");
+    panel.series.push_back(
+        through(open_symbols(plain(label), Colour::grey, Marker::circle, 2), symbol_rows(test, kSymbolsOfARun), x,
+                [&](const Observation& row) { return row.*quantity.measured / shown.unit(quantity, row.nu); }));
   }
   const std::vector<const PredictedCurve*> curves = distinct_curves(shown.prediction);
   const PredictedCurve* const banded = banded_curve(shown.prediction, curves);
   for (const PredictedCurve* drawn : curves) {
+    if (!is_drawn(*drawn, banded)) continue;
+    const std::vector<PredictedRow> rows = thinned(drawn->prediction.rows, kLinePoints);
     Series& line = panel.series.emplace_back(
-        through(law_line(*drawn, drawn == banded ? 2.4 : 1.2), drawn->prediction.rows, x, quantity.of));
+        through(law_line(*drawn, banded, drawn == banded ? 2.4 : 1.2), rows, x,
+                [&](const PredictedRow& row) { return quantity.of(row) / shown.unit(quantity, row.nu); }));
     if (drawn != banded) continue;
     line.bands.resize(2);
-    for (const PredictedRow& row : drawn->prediction.rows) {
-      line.bands[0].push_back(row.mean.*quantity.band);
-      line.bands[1].push_back(row.single.*quantity.band);
+    for (const PredictedRow& row : rows) {
+      line.bands[0].push_back(row.mean.*quantity.band / shown.unit(quantity, row.nu));
+      line.bands[1].push_back(row.single.*quantity.band / shown.unit(quantity, row.nu));
     }
   }
   return panel;
 }
 
-/// Law minus DEM row by row: such a curve was computed at the rows of the run of its seed.
-Panel difference_panel(const Shown& shown, const Predicted& quantity) {
-  Panel panel = shown.panel(quantity.difference);
-  panel.zero_line = true;
-  const auto& curves = shown.prediction.curves;
-  const bool from_law = std::any_of(curves.begin(), curves.end(), [](const PredictedCurve& drawn) {
-    return drawn.seed && drawn.initial == Initial::law;
+/// Whether the curve has a band of a single run, in whose half width its residual counts.
+bool has_band(const PredictionFolder& prediction) {
+  return std::any_of(prediction.curves.begin(), prediction.curves.end(), [](const PredictedCurve& drawn) {
+    return std::any_of(drawn.prediction.rows.begin(), drawn.prediction.rows.end(),
+                       [](const PredictedRow& row) { return row.single.s_par > 0 || row.single.P > 0; });
   });
-  for (const PredictedCurve& drawn : curves) {
-    if (!drawn.seed || (from_law && drawn.initial != Initial::law)) continue;
+}
+
+/// DEM minus law row by row, in half widths of the curve's own band of a single run where it has one. Such a curve was computed at the
+/// rows of the run of its seed.
+Panel residual_panel(const Shown& shown, const Predicted& quantity) {
+  const bool banded = has_band(shown.prediction);
+  Panel panel = shown.panel(banded ? "(DEM − law)/band" : "DEM − law [–]");
+  panel.zero_line = true;
+  const PredictedCurve* const recommended = banded_curve(shown.prediction, distinct_curves(shown.prediction));
+  double end = 0;
+  for (const PredictedCurve& drawn : shown.prediction.curves) {
+    if (!drawn.seed || !is_drawn(drawn, recommended)) continue;
     for (const TestRecord& test : shown.dem) {
       if (test.packing.seed != *drawn.seed) continue;
-      Series& line = panel.series.emplace_back(law_line(drawn, 1));
-      for (std::size_t i = 0; i < std::min(drawn.prediction.rows.size(), test.rows.size()); ++i) {
+      Series& line = panel.series.emplace_back(law_line(drawn, recommended, 1));
+      const std::size_t rows = std::min(drawn.prediction.rows.size(), test.rows.size()),
+                        stride = std::max<std::size_t>(1, rows / kLinePoints);
+      for (std::size_t i = 0; i < rows; i += stride) {
+        const PredictedRow& row = drawn.prediction.rows[i];
+        const double band = banded ? row.single.*quantity.band : 1;
+        if (!(band > 0)) continue;
         line.x.push_back(shown.x(test.rows[i]));
-        line.y.push_back(quantity.of(drawn.prediction.rows[i]) - test.rows[i].*quantity.measured);
+        line.y.push_back((test.rows[i].*quantity.measured - quantity.of(row)) / band);
+        end = std::max(end, line.x.back());
       }
     }
+  }
+  if (banded) {
+    Series inside;
+    inside.x = {0, end};
+    inside.y = {0, 0};
+    inside.bands = {{1, 1}};
+    inside.colour = Colour::grey;
+    panel.series.insert(panel.series.begin(), inside);
   }
   return panel;
 }
 
 }  // namespace
 
-Figure prediction_figure(const predict::PredictionFolder& prediction, std::size_t index) {
-  const Shown shown = shown_of(prediction);
+std::string prediction_id(std::size_t index) { return fmt::format("prediction-{}", index + 1); }
+
+Figure prediction_figure(const predict::PredictionFolder& prediction, const CalibratedLaw& law, std::size_t index) {
+  const Shown shown = shown_of(prediction, law);
   const bool compared = !shown.dem.empty();
   std::vector<Panel> panels;
   for (const Predicted& quantity : kPredicted) panels.push_back(value_panel(shown, quantity));
   for (const Predicted& quantity : kPredicted) {
-    if (compared) panels.push_back(difference_panel(shown, quantity));
+    if (compared) panels.push_back(residual_panel(shown, quantity));
   }
   const std::string folder = "predictions/" + prediction.name + "/";
   std::vector<std::string> sources{folder + "prediction.json", folder + "*.csv"};
   if (compared) sources.push_back(folder + "dem/");
-  const std::string runs =
-      compared ? "DEM on packings that the calibration never saw (" + seed_count(shown.dem) +
-                     "). Below: the law, from its own start where there is one, minus DEM, row by row, a thin line for "
-                     "each run."
-               : "No DEM run of this path; grainlaw predict with --dem makes them.";
+  const std::string runs = compared ? "DEM on packings that the calibration never saw (" + seed_count(shown.dem) + ")."
+                                    : "No DEM run of this path; grainlaw predict with --dem makes them.";
+  const std::string residual =
+      !compared ? ""
+      : has_band(prediction)
+          ? " Below: DEM − law in half widths of the 95 % band of a single run, within the grey strip as expected."
+          : " Below: DEM − law; there is no band of a single run.";
   return {
-      .id = fmt::format("prediction-{}", index + 1),
+      .id = prediction_id(index),
       .title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
                            prediction.path.nu, to_string(prediction.path.branch)),
       .description =
           "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs "
-          "on packings that the calibration never saw, lines the predictions of the law. Below them the differences.",
-      .caption =
-          plain(fmt::format("{} By what it contains the path needs {}: {}. Recommended, the thick line: {}, {}. Bands, "
-                            "about that rung's curve from the law's start: {}.",
-                            runs, to_string(prediction.needed.rung), prediction.needed.why,
-                            to_string(prediction.recommended.rung), prediction.recommended.why, prediction.bands)),
+          "on packings that the calibration never saw, the thick line the recommended prediction of the law with its "
+          "bands. Below each the residuals.",
+      .caption = plain(fmt::format("{}{} Thick: {}, recommended: {}. Bands: {}. The path needs {}: {}.", runs, residual,
+                                   to_string(prediction.recommended.rung), prediction.recommended.why, prediction.bands,
+                                   to_string(prediction.needed.rung), prediction.needed.why)),
       .sources = sources,
       .panels = panels,
       .columns = 3,
-      .panel_height = compared ? 210.0 : 250.0};
+      .panel_height = compared ? 200.0 : 250.0};
 }
 
 }  // namespace grainlaw::app::report

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/report/figure_study.hpp"
 #include "app/report/figures.hpp"
+#include "app/report/first_screen.hpp"
 #include "app/report/number_text.hpp"
 #include "app/report/page.hpp"
 #include "app/report/series.hpp"
 #include "app/report/tables.hpp"
+#include "app/report/warning_groups.hpp"
 #include "model/files/output.hpp"
 
 namespace grainlaw::app {
@@ -20,41 +23,12 @@ Block open(BlockContent content) { return {{std::move(content)}}; }
 Block folded(const std::string& summary, BlockContent content) { return {{std::move(content)}, summary}; }
 Block text(const std::string& words) { return open(Paragraph{plain(words)}); }
 
-std::vector<Block> lead(const chain::ReportInput& input) {
-  const auto& calibration = input.calibration;
-  const auto count = [&](Role role) {
-    return std::count_if(input.tests.begin(), input.tests.end(),
-                         [&](const TestRecord& test) { return test.role == role; });
-  };
-  const std::string subject = fmt::format(
-      "Frictionless spheres in a periodic cell were compressed and sheared ({} calibration tests, {}); an "
-      "incremental constitutive law was fitted to what they did; its predictions are set beside runs that the fit "
-      "never saw. The form of the law and the published numbers are those of Imole, Kumar, Magnanimo and Luding, "
-      "KONA 30 (2013).",
-      count(Role::calibration), seed_count(input.tests));
-  const std::string reading = fmt::format(
-      "In every figure symbols (or thin lines, where said) are DEM data, solid and dotted lines the law, dashed "
-      "lines the published law. Stress is positive in compression, strain in tension; a star means multiplied by "
-      "2⟨r⟩/k. Calibrated range: ν = {:.4g} to {:.4g}, deviatoric strain up to {:.3g}.",
-      calibration.law.range.nu_min, calibration.law.range.nu_max, calibration.law.range.eps_dev_max);
-  std::vector<Block> blocks{text(subject), text(reading)};
-  if (!calibration.law.converged) {
-    std::string stages;
-    for (const fit::Stage& stage : calibration.stages) {
-      if (!stage.converged) stages += (stages.empty() ? "" : ", ") + stage.name;
-    }
-    blocks.push_back(open(Warning{"Not converged: " + stages + ". See the stages of the fit below."}));
-  }
-  for (const std::string& warning : input.warnings) blocks.push_back(open(Warning{warning}));
-  if (!input.run_warnings.empty()) {
-    blocks.push_back(open(Warning{
-        fmt::format("{} warnings came with the DEM runs (energy residual, inertial number or relaxation); they are "
-                    "listed under ",
-                    input.run_warnings.size()),
-        "quality", "the quality of the runs"}));
-  }
-  return blocks;
-}
+constexpr const char* kReading =
+    "Symbols and thin lines in figures are DEM data, thick lines the law, dashed lines the published law; form of the "
+    "law and "
+    "published numbers are those of Imole, Kumar, Magnanimo and Luding, KONA 30 (2013). Stress is positive in "
+    "compression, strain "
+    "in tension; a star means multiplied by 2⟨r⟩/k.";
 
 /// The largest pressure misfit among the constant-volume tests of the coupled fit, in words.
 std::string dilatancy_gap(const chain::ReportInput& input) {
@@ -72,33 +46,22 @@ std::string dilatancy_gap(const chain::ReportInput& input) {
       fixed(100 * worst->bias / worst->max_abs_data, 1), worst->test);
 }
 
-Section predictions(const chain::ReportInput& input) {
+Section predictions(const chain::ReportInput& input, const std::vector<chain::PathError>& errors) {
   Section section{"predictions", "Predictions against runs that the fit never saw", {}};
-  if (input.predictions.empty()) {
-    section.blocks = {text("None: the data do not identify all that a prediction needs.")};
-    return section;
-  }
-  section.blocks = {open(prediction_summary(input.predictions))};
+  if (!input.no_predictions.empty()) section.blocks.push_back(text(input.no_predictions));
+  if (const Table table = unseen_table(errors, true, input.predictions); !table.rows.empty())
+    section.blocks.push_back(open(table));
+  if (const Table table = unseen_table(errors, false, input.predictions); !table.rows.empty())
+    section.blocks.push_back(folded("Path by path: the rehearsals", table));
   for (std::size_t i = 0; i < input.predictions.size(); ++i) {
     const predict::PredictionFolder& prediction = input.predictions[i];
-    section.blocks.push_back(open(prediction_figure(prediction, i)));
-    std::vector<std::string> said;
-    for (const std::string& warning : prediction.warnings)
-      section.blocks.push_back(open(Warning{prediction.name + ": " + warning}));
-    for (const predict::FailedCurve& failed : prediction.failures) {
-      section.blocks.push_back(
-          open(Warning{fmt::format("{}: {} is left out: {}", prediction.name, to_string(failed.model), failed.error)}));
-    }
-    for (const predict::PredictedCurve& drawn : prediction.curves) {
-      for (const std::string& warning : drawn.prediction.warnings) {
-        if (std::find(said.begin(), said.end(), warning) != said.end()) continue;
-        said.push_back(warning);
-        section.blocks.push_back(open(Warning{prediction.name + ": " + warning}));
-      }
-    }
+    Figure figure = prediction_figure(prediction, input.calibration.law, i);
+    if (prediction.provenance.is_object()) figure.command = prediction.provenance.value("command", "");
+    section.blocks.push_back(open(std::move(figure)));
     section.blocks.push_back(folded(prediction.name + ": run by run", prediction_table(prediction)));
   }
-  section.blocks.push_back(folded("Solver statistics", solver_table(input.predictions)));
+  if (!input.predictions.empty())
+    section.blocks.push_back(folded("Solver statistics", solver_table(input.predictions)));
   return section;
 }
 
@@ -108,55 +71,160 @@ Section checks(const fit::Calibration& calibration) {
     if (!table.rows.empty()) section.blocks.push_back(open(table));
   }
   if (section.blocks.empty())
-    section.blocks.push_back(text("Neither fits without one packing nor likelihood profiles were made."));
+    section.blocks.push_back(
+        text("Neither fits without one packing nor likelihood profiles were made; grainlaw calibrate "
+             "with --checks makes them."));
   section.blocks.push_back(folded("Where shear is steady", steady_table(calibration)));
   return section;
 }
 
-Page make_page(const chain::ReportInput& input) {
+/// "74 agree, 47 differ of 191".
+template <class Judged, class Keep>
+std::string agreement(const std::vector<Judged>& all, const Keep& keep) {
+  int agree = 0, differ = 0, of = 0;
+  for (const Judged& judged : all) {
+    if (!keep(judged)) continue;
+    ++of;
+    agree += judged.verdict == "agrees" ? 1 : 0;
+    differ += judged.verdict == "differs" ? 1 : 0;
+  }
+  return fmt::format("{} agree, {} differ of {}", agree, differ, of);
+}
+
+/// Error against cost of the program's choices.
+Section choices(const chain::ReportInput& input) {
+  Section section{"choices", "What the program's choices cost", {}};
+  for (const auto& [name, study] : input.studies) {
+    Figure figure = figure_of(study);
+    figure.id += "-" + std::to_string(section.blocks.size() + 1);
+    figure.title = name + ": " + figure.title;
+    figure.caption = plain(figure.description + ".");
+    figure.sources = {"studies/" + name + "/study.json"};
+    section.blocks.push_back(open(figure));
+  }
+  if (section.blocks.empty())
+    section.blocks.push_back(text(
+        "No study of settings is in studies/. Error against cost of time step, strain rate, rows and packings is drawn "
+        "here after: grainlaw study chain SPEC.json --for PATH.json --vary KEY=VALUE... -o DIR/studies/NAME, DIR the "
+        "folder "
+        "of this calibration."));
+  return section;
+}
+
+Section parameters(const CalibratedLaw& law) {
+  Section section{"parameters", "Parameters", {}};
+  for (const Forest which : {Forest::densities, Forest::ratios, Forest::own}) {
+    if (const Table table = forest(law, which); !table.rows.empty()) section.blocks.push_back(open(table));
+  }
+  section.blocks.push_back(
+      text("Parameters of Eqs. 11, 12 and 14 depend on each other: equal curves come from quite different values. The "
+           "curves are what should be compared."));
+  section.blocks.push_back(folded("All parameters in numbers", parameter_comparison(law)));
+  section.blocks.push_back({{curve_comparison(law, CurveGroup::law), curve_comparison(law, CurveGroup::steady_state)},
+                            "Curves of the law at round densities"});
+  return section;
+}
+
+/// Beside another calibration.
+Section comparison(const chain::ReportInput& input, const std::vector<chain::PathError>& errors,
+                   const chain::ReportInput& other, const std::string& name) {
+  Section section{"comparison", "Beside " + name, {}};
+  const std::vector<chain::PathError> errors_of_other = errors_on_unseen_paths(other);
+  if (const Table table = error_pairs(errors, errors_of_other); table.rows.empty())
+    section.blocks.push_back(text("No path that no fit saw is in both."));
+  else
+    section.blocks.push_back(open(table));
+  if (const Table kinds = errors_by_kind(errors_of_other); !kinds.rows.empty()) {
+    section.blocks.push_back(text("All unseen paths of the other, of which those above are a part:"));
+    section.blocks.push_back(open(kinds));
+  }
+  section.blocks.push_back(open(parameter_pairs(input.calibration.law, other.calibration.law)));
+  return section;
+}
+
+Page make_page(const chain::ReportInput& input, const chain::ReportInput* other, const std::string& name) {
   const auto& calibration = input.calibration;
   const fit::ModeComparison& modes = input.modes;
-  Page page{"From grains to a constitutive law", lead(input), {}};
+  const std::vector<chain::PathError> errors = errors_on_unseen_paths(input);
+  const std::vector<WarningGroup> warnings = warning_groups(input);
+  Page page{"From grains to a constitutive law", first_screen(input, errors), {}};
   const auto add = [&](const char* id, const char* heading, std::vector<Block> blocks) {
     page.sections.push_back({id, heading, std::move(blocks)});
   };
-  add("parameters", "Parameters and curves",
-      {open(parameter_comparison(calibration.law)),
-       text("Parameters of Eqs. 11, 12 and 14 depend on each other: equal curves come from quite different values. The "
-            "curves are what should be compared."),
-       Block{{curve_comparison(calibration.law, CurveGroup::law),
-              curve_comparison(calibration.law, CurveGroup::steady_state)}}});
+  if (other != nullptr) page.sections.push_back(comparison(input, errors, *other, name));
+  page.sections.push_back(predictions(input, errors));
+  // all figures but those of predictions and studies are made of what calibrate wrote
+  const std::string command = fact_of(input, "command", "parameters.json");
+  const auto of_calibrate = [&](Figure figure) {
+    figure.command = command;
+    return open(std::move(figure));
+  };
   if (!modes.verdicts.empty()) {
     add("published", "Beside the published numbers, mode by mode",
-        {open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),
+        {text("Statements: " + agreement(modes.claims, [](auto&) { return true; }) +
+              ". Points of curves: " + agreement(modes.verdicts, [](auto& v) { return v.nu.has_value(); }) +
+              ". Parameters: " + agreement(modes.verdicts, [](auto& v) { return !v.nu; }) +
+              ". The rest is undecided, most of it because its error is wider than what matters, or an identity."),
+         open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),
          folded("Curves: which agree", verdict_table(modes.verdicts, false)),
          folded("Parameters: which agree", verdict_table(modes.verdicts, true))});
   }
+  page.sections.push_back(parameters(calibration.law));
+  add("shear", "The law over the shear tests",
+      {of_calibrate(sheared_pressure_figure(input)), of_calibrate(stress_ratio_figure(input)),
+       of_calibrate(fabric_figure(input))});
+  if (input.pictures) page.sections.back().blocks.push_back(open(packing_drawing(*input.pictures)));
+  add("laws", "Shear parameters over density", {of_calibrate(shear_law_figure(input))});
+  const auto folded_figure = [&](const std::string& summary, Figure figure) {
+    Block block = of_calibrate(std::move(figure));
+    block.summary = summary;
+    return block;
+  };
   add("state", "Pressure, coordination and rattlers",
-      {open(density_figure(input)), open(scaled_density_figure(input)), open(modes_figure(input))});
-  add("shear", "Stress ratio and fabric in shear", {open(stress_ratio_figure(input)), open(fabric_figure(input))});
-  add("laws", "Shear parameters over density", {open(shear_law_figure(input))});
-  page.sections.push_back(predictions(input));
+      {of_calibrate(density_figure(input)),
+       folded_figure("Scaled pressure, overlap and fabric trace", scaled_density_figure(input)),
+       folded_figure("Mode by mode, as the paper draws them", modes_figure(input))});
+  page.sections.push_back(choices(input));
   add("misfit", "What the coupled fit leaves over",
-      {text(dilatancy_gap(input)), open(residual_figure(input)),
+      {text(dilatancy_gap(input)), of_calibrate(residual_figure(input)),
        folded("All numbers, test by test", residual_table(calibration)),
        folded("Stages of the fit", stage_table(calibration))});
   page.sections.push_back(checks(calibration));
-  const std::vector<std::string> none{"none"};
   add("quality", "How quasi-static and how exact the runs were",
-      {open(preparation_quality_figure(input)), open(shear_quality_figure(input)),
-       folded("Warnings of the runs", Items{input.run_warnings.empty() ? none : input.run_warnings})});
+      {text("What goes beyond a limit stands under Warnings, with what it costs."),
+       folded_figure("Compression and decompression", preparation_quality_figure(input)),
+       folded_figure("Element tests", shear_quality_figure(input))});
+  if (warnings.empty())
+    add("warnings", "Warnings", {text("None.")});
+  else
+    add("warnings", "Warnings", {open(warning_table(warnings))});
+  std::vector<std::string> reasons;
+  for (const Reservation& reason : reservations(input, errors)) reasons.push_back(reason.words);
+  page.sections.back().blocks.push_back(folded("All reasons for distrust, weightiest first", Items{reasons}));
   add("provenance", "Provenance and cost",
-      {open(cost_table(input)), open(provenance_table(input)), folded("The resolved spec", spec_table(input)),
-       folded("All runs", run_table(input))});
+      {text(kReading), open(cost_table(input)),
+       folded("Files, commands, versions and seconds", provenance_table(input)),
+       folded("The resolved spec", spec_table(input)), folded("All runs", run_table(input))});
   return page;
+}
+
+Page page_about(const std::filesystem::path& dir, const std::filesystem::path& compare) {
+  const chain::ReportInput input = chain::read_report_input(dir);
+  std::optional<chain::ReportInput> other;
+  if (!compare.empty()) other = chain::read_report_input(compare);
+  return make_page(input, other ? &*other : nullptr, compare.string());
 }
 
 }  // namespace
 }  // namespace report
 
-void write_report(const std::filesystem::path& dir, const std::filesystem::path& html) {
-  write_durably(html, report::page_html(report::make_page(chain::read_report_input(dir))));
+void write_report(const std::filesystem::path& dir, const std::filesystem::path& html,
+                  const std::filesystem::path& compare) {
+  write_durably(html, report::page_html(report::page_about(dir, compare)));
+}
+
+OrderedJson report_json(const std::filesystem::path& dir, const std::filesystem::path& compare) {
+  return report::page_json(report::page_about(dir, compare));
 }
 
 std::string summary_table(const std::filesystem::path& dir) {

@@ -4,96 +4,74 @@
 
 #include <algorithm>
 
-#include "app/report/axis.hpp"
 #include "app/report/page.hpp"
-#include "app/report/svg_series.hpp"
 #include "model/files/output.hpp"
 
 namespace grainlaw::app::report {
 namespace {
 
-// Layout [px] of a figure 960 px wide; text is 12 px.
-constexpr double kWidth = 960;
+// Layout [px] of a figure 1000 px wide; text is 12 px.
+constexpr double kWidth = 1000, kWidest = 600;
 constexpr double kCharacterWidth = 6.6;
 constexpr double kLegendRow = 20, kLegendKey = 30, kLegendGap = 22;
-constexpr double kLeft = 74, kLeftShared = 8,
-                 kRight = 16;  // half of a label to the right
-constexpr double kTitle = 22, kBottom = 44, kBottomShared = 12;
+constexpr double kRight = 16;  // half of a label to the right
+constexpr double kTop = 8, kTitle = 22, kBottom = 44;
+
+constexpr const char* kCentred = " text-anchor=\"middle\"";
 
 std::string text_element(double x, double y, const std::string& attributes, const Text& text) {
   return fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", pixels(x), pixels(y), attributes, to_svg(text));
 }
 
-constexpr const char* kCentred = " text-anchor=\"middle\"";
-
-/// Grid, ticks, numbers and labels of a panel.
-std::string frame_svg(const Panel& panel, const Frame& frame, bool x_numbers, bool y_numbers) {
+/// Grid, ticks and numbers of a panel: all that changes with the shown range.
+std::string scale_svg(const Panel& panel, const Frame& frame) {
   const double left = frame.left, top = frame.top, bottom = top + frame.height, right = left + frame.width;
-  const double centre = left + frame.width / 2;
   std::string grid, ticks, numbers;
   for (const Tick& tick : frame.x.ticks) {
     const double x = frame.px(tick.value);
     const bool major = !tick.label.runs.empty();
     if (major) grid += fmt::format("M{} {}V{}", pixels(x), pixels(top), pixels(bottom));
     ticks += fmt::format("M{} {}v{}", pixels(x), pixels(bottom), major ? 5 : 3);
-    if (major && x_numbers) numbers += text_element(x, bottom + 18, kCentred, tick.label);
+    if (major) numbers += text_element(x, bottom + 18, kCentred, tick.label);
   }
-  std::size_t longest = 4;
   for (const Tick& tick : frame.y.ticks) {
     const double y = frame.py(tick.value);
     const bool major = !tick.label.runs.empty();
     if (major) grid += fmt::format("M{} {}H{}", pixels(left), pixels(y), pixels(right));
     ticks += fmt::format("M{} {}h-{}", pixels(left), pixels(y), major ? 5 : 3);
-    if (major && y_numbers) numbers += text_element(left - 8, y + 4, " text-anchor=\"end\"", tick.label);
-    longest = std::max(longest, character_count(tick.label));
+    if (major) numbers += text_element(left - 8, y + 4, " text-anchor=\"end\"", tick.label);
   }
-  std::string out = fmt::format("<path class=\"grid\" d=\"{}\"/>\n<path class=\"axis\" d=\"{}\"/>\n", grid, ticks);
-  if (panel.zero_line && frame.y.from < 0 && frame.y.to > 0) {
-    out += fmt::format("<path class=\"axis\" d=\"M{} {}H{}\"/>\n", pixels(left), pixels(frame.py(0)), pixels(right));
-  }
-  out += fmt::format("<rect class=\"axis\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", pixels(left), pixels(top),
-                     pixels(frame.width), pixels(frame.height));
-  out += numbers;
-  if (!panel.title.runs.empty()) {
-    out += text_element(centre, top - 7, std::string(" class=\"title\"") + kCentred, panel.title);
-  }
-  if (x_numbers) out += text_element(centre, bottom + 37, kCentred, panel.x.label);
-  if (y_numbers) {
-    const double x = left - 17 - kCharacterWidth * static_cast<double>(std::min<std::size_t>(longest, 7)),
-                 y = top + frame.height / 2;
-    out += text_element(x, y, fmt::format("{} transform=\"rotate(-90 {} {})\"", kCentred, pixels(x), pixels(y)),
-                        panel.y.label);
-  }
-  return out;
+  if (panel.zero_line && frame.y.from < 0 && frame.y.to > 0)
+    ticks += fmt::format("M{} {}H{}", pixels(left), pixels(frame.py(0)), pixels(right));
+  return fmt::format("<g class=\"a\"><path class=\"grid\" d=\"{}\"/><path class=\"axis\" d=\"{}\"/>\n{}</g>\n", grid,
+                     ticks, numbers);
 }
 
-struct Legend {
-  std::string svg;
-  double height = 0;
-};
+/// The scale, the frame, title and labels.
+std::string axes_svg(const Panel& panel, const Frame& frame) {
+  const double centre = frame.left + frame.width / 2, middle = frame.top + frame.height / 2;
+  std::string out = scale_svg(panel, frame);
+  out += fmt::format("<rect class=\"axis\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", pixels(frame.left),
+                     pixels(frame.top), pixels(frame.width), pixels(frame.height));
+  if (!panel.title.runs.empty())
+    out += text_element(centre, frame.top - 7, std::string(" class=\"title\"") + kCentred, panel.title);
+  out += text_element(centre, frame.top + frame.height + 37, kCentred, panel.x.label);
+  return out + text_element(13, middle, fmt::format("{} transform=\"rotate(-90 13 {})\"", kCentred, pixels(middle)),
+                            panel.y.label);
+}
 
-/// Entries in rows above the panels, each label once.
-Legend make_legend(const Figure& figure) {
-  Legend legend;
-  std::vector<std::string> seen;
-  double x = 10, y = 14;
-  for (const Panel& panel : figure.panels) {
-    for (const Series& series : panel.series) {
-      const std::string label = to_plain(series.label);
-      if (label.empty() || std::find(seen.begin(), seen.end(), label) != seen.end()) continue;
-      seen.push_back(label);
-      const double width =
-          kLegendKey + kCharacterWidth * static_cast<double>(character_count(series.label)) + kLegendGap;
-      if (x > 10 && x + width > kWidth) {
-        x = 10;
-        y += kLegendRow;
-      }
-      legend.svg += legend_key(series, x, y - 4) + text_element(x + kLegendKey, y, "", series.label);
-      x += width;
-    }
+/// Room for the numbers and the label of the ordinate.
+double left_of(const std::vector<Frame>& frames) {
+  std::size_t longest = 2;
+  for (const Frame& frame : frames) {
+    for (const Tick& tick : frame.y.ticks) longest = std::max(longest, character_count(tick.label));
   }
-  legend.height = seen.empty() ? 0 : y + 10;
-  return legend;
+  return 30 + kCharacterWidth * static_cast<double>(longest);
+}
+
+std::string svg_begin(double width, double height, const std::string& attributes) {
+  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\"{}>\n", pixels(width),
+                     pixels(height), attributes);
 }
 
 /// `style` with each declaration that reads a variable preceded by one with its
@@ -120,56 +98,108 @@ std::string with_plain_colours(const std::string& style) {
 
 }  // namespace
 
-RenderedFigure render_svg(const Figure& figure) {
-  const Legend legend = make_legend(figure);
-  const int count = static_cast<int>(figure.panels.size());
-  const int columns = std::max(1, std::min(figure.columns, count));
-  const int rows = (count + columns - 1) / columns;
-  const bool shared = figure.shared_axes;
+RenderedFigure render(const Figure& figure) {
+  RenderedFigure rendered;
+  const auto& panels = figure.panels;
+  rendered.columns = std::max(1, std::min(figure.columns, static_cast<int>(panels.size())));
+  rendered.width = std::min(kWidest, kWidth / rendered.columns);
+  const bool titled = std::any_of(panels.begin(), panels.end(), [](const Panel& p) { return !p.title.runs.empty(); });
+  const double top = titled ? kTitle : kTop;
+  rendered.height = top + figure.panel_height + kBottom;
   std::vector<const Panel*> all;
-  for (const Panel& panel : figure.panels) all.push_back(&panel);
-
-  const double column_left = shared ? kLeftShared : kLeft;
-  const double width = (kWidth - kLeft - column_left * (columns - 1) - kRight * columns) / columns;
-  const double row_height = kTitle + figure.panel_height + (shared ? kBottomShared : kBottom);
-  const double height = legend.height + rows * row_height + (shared ? kBottom - kBottomShared : 0);
-
-  std::string body;
-  Unseen unseen;
-  for (int i = 0; i < count; ++i) {
-    const Panel& panel = figure.panels[static_cast<std::size_t>(i)];
-    const int row = i / columns, column = i % columns;
-    const auto panels = shared ? all : std::vector<const Panel*>{&panel};
-    const Frame frame{shared_axis(panels, true, std::max(3, static_cast<int>(width / 60))),
-                      shared_axis(panels, false, 5),
-                      kLeft + column * (width + kRight + column_left),
-                      legend.height + row * row_height + kTitle,
-                      width,
-                      figure.panel_height};
-    const std::string clip = fmt::format("{}-clip-{}", figure.id, i);
-    body += fmt::format(
-        "<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" "
-        "width=\"{}\" height=\"{}\"/></clipPath>\n",
-        clip, pixels(frame.left), pixels(frame.top), pixels(frame.width), pixels(frame.height));
-    body += frame_svg(panel, frame, !shared || i + columns >= count, !shared || column == 0);
-    body += fmt::format("<g clip-path=\"url(#{})\">\n", clip);
-    for (const Series& series : panel.series) body += series_svg(series, frame, unseen);
-    body += "</g>\n";
+  for (const Panel& panel : panels) all.push_back(&panel);
+  for (const Panel& panel : panels) {
+    const auto sharing = figure.shared_axes ? all : std::vector<const Panel*>{&panel};
+    rendered.frames.push_back({shared_axis(sharing, true, std::max(3, static_cast<int>(rendered.width / 75))),
+                               shared_axis(sharing, false, 5), 0, top, 0, figure.panel_height});
+    for (const Series& series : panel.series) {
+      if (!series.toggle.empty() &&
+          std::find(rendered.toggles.begin(), rendered.toggles.end(), series.toggle) == rendered.toggles.end())
+        rendered.toggles.push_back(series.toggle);
+    }
   }
-  const std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} "
-      "{}\" role=\"img\" "
-      "aria-labelledby=\"{}-title {}-description\">\n<title "
-      "id=\"{}-title\">{}</title>\n<desc "
-      "id=\"{}-description\">{}</desc>\n"
-      "{}{}</svg>\n",
-      pixels(kWidth), pixels(height), figure.id, figure.id, figure.id, to_svg(plain(figure.title)), figure.id,
-      to_svg(plain(figure.description)), legend.svg, body);
-  return {svg, unseen.undefined, unseen.outside};
+  const double left = left_of(rendered.frames);
+  Symbols symbols(figure.id);
+  Unseen unseen;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    Frame& frame = rendered.frames[i];
+    frame.left = left;
+    frame.width = rendered.width - left - kRight;
+    const std::string clip = fmt::format("{}-clip-{}", figure.id, i);
+    std::string svg =
+        svg_begin(rendered.width, rendered.height,
+                  fmt::format(" class=\"p\" role=\"img\" aria-label=\"{}\"", to_html(plain(panel_name(figure, i)))));
+    svg += fmt::format("<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n", clip,
+                       pixels(frame.left), pixels(frame.top), pixels(frame.width), pixels(frame.height));
+    svg += axes_svg(panels[i], frame) + fmt::format("<g clip-path=\"url(#{})\">\n", clip);
+    for (const Series& series : panels[i].series) {
+      const auto at = std::find(rendered.toggles.begin(), rendered.toggles.end(), series.toggle);
+      const std::string toggle = series.toggle.empty() ? "" : fmt::format("t{}", at - rendered.toggles.begin());
+      svg += series_svg(series, toggle, frame, symbols, unseen);
+    }
+    rendered.panels.push_back(svg + "</g>\n</svg>\n");
+  }
+  // Symbols of all panels are defined in the first.
+  if (!panels.empty()) rendered.panels[0].insert(rendered.panels[0].find('\n') + 1, symbols.definitions());
+  rendered.undefined_points = unseen.undefined;
+  rendered.outside_points = unseen.outside;
+  return rendered;
+}
+
+std::string panel_name(const Figure& figure, std::size_t i) {
+  const Panel& panel = figure.panels[i];
+  const std::string title = to_plain(panel.title);
+  return fmt::format("{}: {}{} over {}", figure.title, title.empty() ? "" : title + ", ", to_plain(panel.y.label),
+                     to_plain(panel.x.label));
+}
+
+std::vector<const Series*> legend_entries(const Figure& figure) {
+  std::vector<const Series*> entries;
+  for (const Panel& panel : figure.panels) {
+    for (const Series& series : panel.series) {
+      const std::string label = to_plain(series.label);
+      const auto is_there = [&](const Series* other) { return to_plain(other->label) == label; };
+      if (!label.empty() && std::none_of(entries.begin(), entries.end(), is_there)) entries.push_back(&series);
+    }
+  }
+  return entries;
+}
+
+std::string figure_svg(const Figure& with_hidden) {
+  Figure figure = with_hidden;
+  for (Panel& panel : figure.panels) std::erase_if(panel.series, [](const Series& s) { return s.initially_hidden; });
+  const RenderedFigure rendered = render(figure);
+  const double width = rendered.columns * rendered.width;
+  std::string legend;
+  double x = 10, y = 14;
+  for (const Series* entry : legend_entries(figure)) {
+    const double taken = kLegendKey + kCharacterWidth * static_cast<double>(character_count(entry->label)) + kLegendGap;
+    if (x > 10 && x + taken > width) {
+      x = 10;
+      y += kLegendRow;
+    }
+    legend += legend_key(*entry, x, y - 4) + text_element(x + kLegendKey, y, "", entry->label);
+    x += taken;
+  }
+  const double top = legend.empty() ? 0 : y + 10;
+  std::string panels;
+  for (std::size_t i = 0; i < rendered.panels.size(); ++i) {
+    const int row = static_cast<int>(i) / rendered.columns, column = static_cast<int>(i) % rendered.columns;
+    panels += fmt::format("<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"", pixels(column * rendered.width),
+                          pixels(top + row * rendered.height), pixels(rendered.width), pixels(rendered.height)) +
+              rendered.panels[i].substr(std::string("<svg").size());
+  }
+  const std::size_t rows = (rendered.panels.size() + static_cast<std::size_t>(rendered.columns) - 1) /
+                           static_cast<std::size_t>(rendered.columns);
+  return svg_begin(width, top + static_cast<double>(rows) * rendered.height,
+                   fmt::format(" role=\"img\" aria-labelledby=\"{0}-title {0}-description\"", figure.id)) +
+         fmt::format("<title id=\"{0}-title\">{1}</title>\n<desc id=\"{0}-description\">{2}</desc>\n", figure.id,
+                     to_svg(plain(figure.title)), to_svg(plain(figure.description))) +
+         legend + panels + "</svg>\n";
 }
 
 void write_svg(const std::filesystem::path& file, const Figure& figure) {
-  std::string svg = render_svg(figure).svg;
+  std::string svg = figure_svg(figure);
   svg.insert(svg.find('>') + 1,
              "\n<style><![CDATA[" +
                  with_plain_colours(page_style() + std::string("svg { background: var(--ground); }")) + "]]></style>");

@@ -9,137 +9,137 @@
 #include <optional>
 #include <vector>
 
+#include "app/report/svg_path.hpp"
+
 namespace grainlaw::app::report {
 namespace {
 
-struct PixelPoint {
-  double x = 0, y = 0;
-  double y_low = 0, y_high = 0;  ///< ends of the error bar, or edges of the
-                                 ///< band; equal when there is none
-};
-using Stretch = std::vector<PixelPoint>;  // points without an undefined one between them
+constexpr double kLineTolerance = 0.2;   ///< of a simplified line [px]
+constexpr double kSymbolDistance = 0.5;  ///< symbols closer than this are one [px]
+
+using Stretch = PixelPoints;  // points without an undefined one between them
 
 std::string colour_class(Colour colour) { return "k" + std::to_string(static_cast<int>(colour)); }
 
-/// Path data of straight lines from point to point.
-std::string polyline(const std::vector<std::array<double, 2>>& points) {
-  std::string path;
-  for (const auto& [x, y] : points) path += fmt::format("{}{} {}", path.empty() ? "M" : "L", pixels(x), pixels(y));
-  return path;
-}
-
 /// Five points on a circle of `radius`, five between them where the edges of a pentagram meet.
-std::string star_path(const PixelPoint& p, double radius) {
+std::string star_path(double radius) {
   const double inner = radius * std::cos(0.4 * std::numbers::pi) / std::cos(0.2 * std::numbers::pi);
-  std::vector<std::array<double, 2>> corners;
+  SvgPath path;
   for (int k = 0; k < 10; ++k) {
     const double r = k % 2 == 0 ? radius : inner, angle = 0.2 * std::numbers::pi * k;
-    corners.push_back({p.x + r * std::sin(angle), p.y - r * std::cos(angle)});
+    k == 0 ? path.move(r * std::sin(angle), -r * std::cos(angle))
+           : path.line(r * std::sin(angle), -r * std::cos(angle));
   }
-  return polyline(corners) + "z";
+  path.close();
+  return path.data();
 }
 
-/// Path data of a symbol of half width `size` around a point.
-std::string marker_path(Marker marker, double size, const PixelPoint& p) {
+/// Path data of a symbol of half width `size` around the origin.
+std::string symbol_path(Marker marker, double size) {
   const std::string s = pixels(size), d = pixels(2 * size);
+  const std::string side = pixels(1.8 * size), half_side = pixels(0.9 * size);
   const std::string diagonal = pixels(1.2 * size), double_diagonal = pixels(2.4 * size);
   switch (marker) {
     case Marker::none:
       return "";
     case Marker::circle:
-      return fmt::format("M{} {}a{} {} 0 1 0 {} 0a{} {} 0 1 0 -{} 0z", pixels(p.x - size), pixels(p.y), s, s, d, s, s,
-                         d);
+      return fmt::format("M-{0} 0a{0} {0} 0 1 0 {1} 0a{0} {0} 0 1 0 -{1} 0z", s, d);
     case Marker::square:
-      return fmt::format("M{} {}h{}v{}h-{}z", pixels(p.x - 0.9 * size), pixels(p.y - 0.9 * size), pixels(1.8 * size),
-                         pixels(1.8 * size), pixels(1.8 * size));
+      return fmt::format("M-{0}-{0}h{1}v{1}h-{1}z", half_side, side);
     case Marker::triangle:
-      return fmt::format("M{} {}l{} {}h-{}z", pixels(p.x), pixels(p.y - 1.2 * size), diagonal, pixels(2.1 * size),
-                         double_diagonal);
+      return fmt::format("M0-{0}l{0} {1}h-{1}z", diagonal, double_diagonal);
     case Marker::diamond:
-      return fmt::format("M{} {}l{} {}l-{} {}l-{} -{}z", pixels(p.x), pixels(p.y - 1.2 * size), diagonal, diagonal,
-                         diagonal, diagonal, diagonal, diagonal);
+      return fmt::format("M0-{0}l{0} {0}l-{0} {0}l-{0}-{0}z", diagonal);
     case Marker::cross:
-      return fmt::format("M{} {}l{} {}m0 -{}l-{} {}", pixels(p.x - size), pixels(p.y - size), d, d, d, d, d);
+      return fmt::format("M-{0}-{0}l{1} {1}m0-{1}l-{1} {1}", s, d);
     case Marker::star:
-      return star_path(p, 1.2 * size);
+      return star_path(1.2 * size);
     case Marker::plus:
-      return fmt::format("M{} {}h{}M{} {}v{}", pixels(p.x - 1.2 * size), pixels(p.y), double_diagonal, pixels(p.x),
-                         pixels(p.y - 1.2 * size), double_diagonal);
+      return fmt::format("M-{0} 0h{1}M0-{0}v{1}", diagonal, double_diagonal);
   }
   return "";
 }
 
-/// The symbols at all `points`: filled, or an outline for open symbols and
-/// crosses.
-std::string marker_svg(const Series& series, double size, const std::vector<PixelPoint>& points) {
-  if (series.marker == Marker::none) return "";
-  std::string path;
-  for (const PixelPoint& p : points) path += marker_path(series.marker, size, p);
+/// Filled, or an outline for open symbols and crosses.
+std::string symbol_svg(const Series& series, double size) {
   const bool strokes_only = series.open_marker || series.marker == Marker::cross || series.marker == Marker::plus;
-  return fmt::format("<path d=\"{}\"{}/>", path,
-                     strokes_only ? R"( fill="none" stroke="currentColor" stroke-width="1.2")"
-                                  : R"( fill="currentColor" stroke="none")");
+  return fmt::format(R"(<path class="{}" d="{}"/>)", strokes_only ? "o" : "f", symbol_path(series.marker, size));
+}
+
+/// Class and width of its line.
+std::string line_style(const Series& series) {
+  const char* const dashes = series.line == Line::dashed ? " d1" : series.line == Line::dotted ? " d2" : "";
+  return fmt::format(R"(class="l{}" stroke-width="{}")", dashes, pixels(series.line_width));
 }
 
 std::string line_svg(const Series& series, const std::vector<Stretch>& stretches) {
   if (series.line == Line::none) return "";
-  std::string path;
+  SvgPath path;
   for (const Stretch& stretch : stretches) {
-    if (stretch.size() < 2) continue;
-    std::vector<std::array<double, 2>> points;
-    for (const PixelPoint& p : stretch) points.push_back({p.x, p.y});
-    path += polyline(points);
+    if (stretch.size() > 1) path.polyline(simplified(stretch, kLineTolerance));
   }
-  const char* const dashes = series.line == Line::dashed   ? R"( stroke-dasharray="7 4")"
-                             : series.line == Line::dotted ? R"( stroke-dasharray="1.5 3.5" stroke-linecap="round")"
-                                                           : "";
-  return fmt::format(R"(<path d="{}" fill="none" stroke="currentColor" stroke-width="{}" stroke-linejoin="round"{}/>)",
-                     path, pixels(series.line_width), dashes);
+  return fmt::format(R"(<path {} d="{}"/>)", line_style(series), path.data());
 }
 
-std::string error_bar_svg(const std::vector<PixelPoint>& points) {
-  std::string path;
-  for (const PixelPoint& p : points) {
-    if (p.y_low == p.y_high) continue;
-    path += fmt::format("M{} {}V{}M{} {}h5M{} {}h5", pixels(p.x), pixels(p.y_low), pixels(p.y_high), pixels(p.x - 2.5),
-                        pixels(p.y_low), pixels(p.x - 2.5), pixels(p.y_high));
+/// The symbols stand at the corners of a path that is itself not drawn.
+std::string markers_svg(const Series& series, const PixelPoints& points, Symbols& symbols) {
+  if (series.marker == Marker::none) return "";
+  PixelPoints apart;
+  for (const auto& p : points) {
+    const auto is_there = [&](const auto& q) {
+      return std::abs(p[0] - q[0]) < kSymbolDistance && std::abs(p[1] - q[1]) < kSymbolDistance;
+    };
+    if (apart.empty() || !is_there(apart.back())) apart.push_back(p);
   }
-  return path.empty() ? "" : fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"currentColor\"/>", path);
+  SvgPath path;
+  path.polyline(apart);
+  if (apart.size() == 1) path.line(apart[0][0], apart[0][1]);  // a mere point has no corner
+  return fmt::format(R"svg(<path class="m" style="marker:url(#{})" d="{}"/>)svg", symbols.id_of(series), path.data());
 }
 
-/// Points by point(i), an undefined one ends a stretch.
-template <class Point>
-std::vector<Stretch> stretches_of(const Series& series, const Point& point) {
-  std::vector<Stretch> stretches(1);
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    if (const std::optional<PixelPoint> p = point(i)) {
-      stretches.back().push_back(*p);
-    } else if (!stretches.back().empty()) {
-      stretches.emplace_back();
+std::string error_bars_svg(const Series& series, const Frame& frame) {
+  if (series.y_error.empty()) return "";
+  SvgPath path;
+  for (std::size_t i = 0; i < std::min(series.x.size(), series.y_error.size()); ++i) {
+    const double y = series.y[i], error = series.y_error[i];
+    if (!frame.x.defined_at(series.x[i]) || !frame.y.defined_at(y) || !frame.y.defined_at(y - error) || !(error > 0))
+      continue;
+    const double x = frame.px(series.x[i]), low = frame.py(y - error), high = frame.py(y + error);
+    path.move(x, low);
+    path.line(x, high);
+    for (const double end : {low, high}) {
+      path.move(x - 2.5, end);
+      path.line(x + 2.5, end);
     }
   }
-  return stretches;
+  return fmt::format(R"(<path class="e" d="{}"/>)", path.data());
 }
 
 std::string band_svg(const Series& series, const std::vector<double>& half_width, const Frame& frame) {
-  const auto stretches = stretches_of(series, [&](std::size_t i) -> std::optional<PixelPoint> {
-    const double x = series.x[i], low = series.y[i] - half_width[i], high = series.y[i] + half_width[i];
-    if (!frame.x.defined_at(x) || !frame.y.defined_at(low) || !frame.y.defined_at(high)) return std::nullopt;
-    return PixelPoint{frame.px(x), frame.py(series.y[i]), frame.py(low), frame.py(high)};
-  });
-  std::string path;
-  for (const Stretch& stretch : stretches) {
-    if (stretch.size() < 2) continue;
-    std::vector<std::array<double, 2>> outline;
-    for (const PixelPoint& p : stretch) outline.push_back({p.x, p.y_low});
-    for (auto p = stretch.rbegin(); p != stretch.rend(); ++p) outline.push_back({p->x, p->y_high});
-    path += polyline(outline) + "z";
+  SvgPath path;
+  PixelPoints low, high;
+  const auto draw = [&] {
+    if (low.size() > 1) {
+      PixelPoints outline = simplified(low, kLineTolerance);
+      const PixelPoints back = simplified(high, kLineTolerance);
+      outline.insert(outline.end(), back.rbegin(), back.rend());
+      path.polyline(outline);
+      path.close();
+    }
+    low.clear();
+    high.clear();
+  };
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    const double x = series.x[i], bottom = series.y[i] - half_width[i], top = series.y[i] + half_width[i];
+    if (!frame.x.defined_at(x) || !frame.y.defined_at(bottom) || !frame.y.defined_at(top)) {
+      draw();
+      continue;
+    }
+    low.push_back({frame.px(x), frame.py(bottom)});
+    high.push_back({frame.px(x), frame.py(top)});
   }
-  if (path.empty()) return path;
-  return fmt::format(
-      "<path class=\"band\" d=\"{}\" fill=\"currentColor\" "
-      "fill-opacity=\"0.14\"/>",
-      path);
+  draw();
+  return fmt::format(R"(<path class="b" d="{}"/>)", path.data());
 }
 
 double near(double fraction) { return std::clamp(fraction, -3.0, 4.0); }
@@ -161,37 +161,57 @@ std::string pixels(double value) {
 double Frame::px(double value) const { return left + near(x.fraction(value)) * width; }
 double Frame::py(double value) const { return top + (1 - near(y.fraction(value))) * height; }
 
-std::string series_svg(const Series& series, const Frame& frame, Unseen& unseen) {
-  std::vector<PixelPoint> within;
-  const auto stretches = stretches_of(series, [&](std::size_t i) -> std::optional<PixelPoint> {
+std::string Symbols::id_of(const Series& series) {
+  const std::string symbol =
+      fmt::format(R"(class="{}">{})", colour_class(series.colour), symbol_svg(series, series.marker_size));
+  auto at = std::find(symbols_.begin(), symbols_.end(), symbol);
+  if (at == symbols_.end()) at = symbols_.insert(at, symbol);
+  return fmt::format("{}-m{}", figure_, at - symbols_.begin());
+}
+
+std::string Symbols::definitions() const {
+  std::string out = "<defs>";
+  for (std::size_t i = 0; i < symbols_.size(); ++i) {
+    out += fmt::format(
+        R"(<marker id="{}-m{}" viewBox="-12 -12 24 24" markerWidth="24" markerHeight="24" markerUnits="userSpaceOnUse" {}</marker>)",
+        figure_, i, symbols_[i]);
+  }
+  return out + "</defs>\n";
+}
+
+std::string series_svg(const Series& series, const std::string& toggle, const Frame& frame, Symbols& symbols,
+                       Unseen& unseen) {
+  PixelPoints within;
+  std::vector<Stretch> stretches(1);
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
     const double x = series.x[i], y = series.y[i];
     if (!frame.x.defined_at(x) || !frame.y.defined_at(y)) {
       ++unseen.undefined;
-      return std::nullopt;
+      if (!stretches.back().empty()) stretches.emplace_back();
+      continue;
     }
-    PixelPoint p{frame.px(x), frame.py(y), 0, 0};
-    if (i < series.y_error.size() && frame.y.defined_at(y - series.y_error[i]) && series.y_error[i] > 0) {
-      p.y_low = frame.py(y - series.y_error[i]);
-      p.y_high = frame.py(y + series.y_error[i]);
-    }
+    stretches.back().push_back({frame.px(x), frame.py(y)});
     if (is_within(frame.x, x) && is_within(frame.y, y)) {
-      within.push_back(p);
+      within.push_back(stretches.back().back());
     } else if (series.marker != Marker::none) {
       ++unseen.outside;
     }
-    return p;
-  });
+  }
   std::string out;
   for (const std::vector<double>& band : series.bands) out += band_svg(series, band, frame);
-  out += error_bar_svg(within) + line_svg(series, stretches) + marker_svg(series, series.marker_size, within);
-  return fmt::format("<g class=\"{}\"><title>{}</title>{}</g>\n", colour_class(series.colour),
-                     escape_markup(to_plain(series.label)), out);
+  out += error_bars_svg(series, frame) + line_svg(series, stretches) + markers_svg(series, within, symbols);
+  return fmt::format("<g class=\"s {}{}\"><title>{}</title>{}</g>\n", colour_class(series.colour),
+                     toggle.empty() ? "" : " " + toggle, escape_markup(to_plain(series.label)), out);
 }
 
 std::string legend_key(const Series& series, double x, double y) {
-  const PixelPoint left{x, y, 0, 0}, middle{x + 12, y, 0, 0}, right{x + 24, y, 0, 0};
-  return fmt::format("<g class=\"{}\">{}{}</g>", colour_class(series.colour), line_svg(series, {{left, right}}),
-                     marker_svg(series, std::max(3.0, series.marker_size), {middle}));
+  std::string out = fmt::format(R"svg(<g class="{}" transform="translate({} {})">)svg", colour_class(series.colour),
+                                pixels(x), pixels(y));
+  if (series.line != Line::none) out += fmt::format(R"(<path {} d="M0 0h24"/>)", line_style(series));
+  if (series.marker != Marker::none)
+    out += fmt::format(R"svg(<g transform="translate(12 0)">{}</g>)svg",
+                       symbol_svg(series, std::max(3.0, series.marker_size)));
+  return out + "</g>";
 }
 
 }  // namespace grainlaw::app::report

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <ranges>
 #include <string>
 #include <utility>
@@ -17,10 +18,20 @@ namespace grainlaw::app::report {
 
 inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
+/// An estimate as a line from lower to upper with a mark at its value, beside a reference; NaN: not drawn.
+struct Bar {
+  double lower = kUndefined, value = kUndefined, upper = kUndefined, reference = kUndefined;
+};
+
+inline constexpr int kHeats = 5;  ///< shades of a heat map, from the best to the worst
+
 /// What a reader sees, and the number behind it.
 struct Cell {
   Text text;
-  double value = kUndefined;  ///< before rounding, in the unit of the text; NaN where the cell shows words
+  double value = kUndefined;    ///< before rounding, in the unit of the text; NaN where the cell shows words
+  std::string link = {};        ///< id of the section, figure or table that has more; empty: none
+  int heat = -1;                ///< shade, 0 to kHeats - 1; -1: none
+  std::optional<Bar> bar = {};  ///< drawn in place of the text, which then is for readers without a picture
 
   Cell(Text words) : text(std::move(words)) {}
   Cell(const std::string& words) : text(plain(words)) {}
@@ -41,6 +52,9 @@ struct Table {
   std::vector<TableColumn> columns;
   std::vector<std::vector<Cell>> rows;  ///< as many cells as columns
   std::string source;                   ///< file, may be empty
+  std::string id = {};                  ///< letters, digits and '-'; empty: nothing links to it
+  std::vector<std::string> notes = {};  ///< beneath the rows, as many or none; empty: no note
+  double bar_from = 0, bar_to = 1;      ///< range of the bars
 };
 
 /// Numbers as cells: with significant digits, with decimals, with a standard error.

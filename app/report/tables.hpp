@@ -4,12 +4,16 @@
 #include <string>
 
 #include "app/report/table.hpp"
-#include "chain/report_input.hpp"
+#include "chain/unseen_paths.hpp"
 
 namespace grainlaw::app::report {
 
 /// Every parameter: meaning, symbol, equation, ours +- one standard error, 95 % interval, published, relative difference.
 Table parameter_comparison(const CalibratedLaw& law);
+/// Parameters with a value as bars with their intervals beside the published ones: jamming densities as they are, those with a
+/// published value over it, others over their own.
+enum class Forest { densities, ratios, own };
+Table forest(const CalibratedLaw& law, Forest which);
 /// What the parameters mean: C*, phi_r, P*, s_max, beta_s, F_max, beta_F at round densities of the calibrated range.
 enum class CurveGroup { law, steady_state };
 Table curve_comparison(const CalibratedLaw& law, CurveGroup which);
@@ -29,12 +33,17 @@ Table left_out_table(const fit::Calibration& calibration);
 Table profile_table(const fit::Calibration& calibration);
 /// Detected onsets of the steady state, test by test.
 Table steady_table(const fit::Calibration& calibration);
-/// Bias and normalised RMS of every model and start, mean over seeds.
-Table prediction_summary(const std::vector<predict::PredictionFolder>& predictions);
+/// Error of each quantity by each rung on the predicted, or on the rehearsed, paths, as a heat map; predicted ones with the share
+/// within the bands and links to the figures. `predictions` are those of `errors`.
+Table unseen_table(const std::vector<chain::PathError>& errors, bool predicted,
+                   const std::vector<predict::PredictionFolder>& predictions);
 /// One prediction in full.
 Table prediction_table(const predict::PredictionFolder& prediction);
 /// Solver statistics of every curve.
 Table solver_table(const std::vector<predict::PredictionFolder>& predictions);
+/// Parameters of two laws, the difference in units of its error; and their errors on the unseen paths that both have.
+Table parameter_pairs(const CalibratedLaw& ours, const CalibratedLaw& other);
+Table error_pairs(const std::vector<chain::PathError>& ours, const std::vector<chain::PathError>& other);
 /// Per run: seed, particles, rows, steps, seconds, largest energy ratio, energy residual and inertial number.
 Table run_table(const chain::ReportInput& input);
 /// Steps, particle-steps and seconds of the data set and of each prediction's runs.

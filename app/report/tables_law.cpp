@@ -79,16 +79,71 @@ Table parameter_comparison(const CalibratedLaw& law) {
   const auto difference = [](const Parameter& p) {
     return percent_difference(p.is_known() ? p.estimate.value : kUndefined, p.published());
   };
-  return table_of("Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)", "parameters.json",
-                  parameters_of(law),
-                  {{"parameter", words, [](auto& p) { return p.info.name; }},
-                   {"symbol", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
-                   {"Eq.", symbol, [](auto& p) { return equation_text(p.info.equation); }},
-                   {"ours ± standard error", number, estimate_cell},
-                   {"95 % interval", number, interval_of},
-                   {"published", number, [](auto& p) { return digits(p.published(), 5); }},
-                   {"difference", number, difference},
-                   {"note", words, [](auto& p) { return p.estimate.note; }}});
+  Table table = table_of("Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)",
+                         "parameters.json", parameters_of(law),
+                         {{"parameter", words, [](auto& p) { return p.info.name; }},
+                          {"symbol", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
+                          {"Eq.", symbol, [](auto& p) { return equation_text(p.info.equation); }},
+                          {"ours ± standard error", number, estimate_cell},
+                          {"95 % interval", number, interval_of},
+                          {"published", number, [](auto& p) { return digits(p.published(), 5); }},
+                          {"difference", number, difference}});
+  for (const Parameter& p : parameters_of(law)) table.notes.push_back(p.estimate.note);
+  return table;
+}
+
+Table forest(const CalibratedLaw& law, Forest which) {
+  const auto scale = [=](const Parameter& p) {
+    return which == Forest::own ? std::abs(p.estimate.value) : std::abs(p.published());
+  };
+  const auto is_density = [](const Parameter& p) { return std::string_view(p.info.name).ends_with("nu_c"); };
+  std::vector<Parameter> shown;
+  for (const Parameter& p : parameters_of(law)) {
+    if (!p.is_known()) continue;
+    const bool published = std::isfinite(p.published()) && p.published() != 0;
+    const Forest its = is_density(p) ? Forest::densities : published ? Forest::ratios : Forest::own;
+    if (its == which && (its == Forest::densities || scale(p) > 0)) shown.push_back(p);
+  }
+  const auto bar = [=](const Parameter& p) {
+    const double unit = which == Forest::densities ? 1 : scale(p), half = p.estimate.half_width();
+    Bar drawn{(p.estimate.value - half) / unit, p.estimate.value / unit, (p.estimate.value + half) / unit,
+              which == Forest::own ? kUndefined : p.published() / unit};
+    Cell cell(fmt::format("ours {}, published {}", significant(p.estimate.value), significant(p.published())),
+              drawn.value);
+    cell.bar = drawn;
+    return cell;
+  };
+  std::vector<ColumnOf<Parameter>> columns{{"", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
+                                           {"parameter", words, [](auto& p) { return p.info.name; }},
+                                           {"", symbol, bar},
+                                           {"ours ± standard error", number, estimate_cell}};
+  if (which != Forest::own) columns.push_back({"published", number, [](auto& p) { return digits(p.published(), 5); }});
+  Table table = table_of(
+      which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
+      : which == Forest::ratios
+          ? "Parameters over the published value: ours with 95 % interval (dot, at the end where it lies beyond), "
+            "published (bar)"
+          : "Parameters that the paper does not have, over their own value",
+      "parameters.json", shown, columns);
+  // to both ends whatever is drawn, but no farther than none and twice the value
+  table.bar_from = 1e300, table.bar_to = -1e300;
+  for (const auto& row : table.rows) {
+    for (const double x : {row[2].bar->lower, row[2].bar->value, row[2].bar->upper, row[2].bar->reference}) {
+      if (!std::isfinite(x)) continue;
+      table.bar_from = std::min(table.bar_from, x);
+      table.bar_to = std::max(table.bar_to, x);
+    }
+  }
+  if (which != Forest::densities) {
+    table.bar_from = std::clamp(table.bar_from, 0.0, 0.8);
+    table.bar_to = std::clamp(table.bar_to, 1.2, 2.0);
+  }
+  table.columns[2].heading = notation(fmt::format("{}{} … {}",
+                                                  which == Forest::densities ? "{ν} = "
+                                                  : which == Forest::ratios  ? "over published: "
+                                                                             : "over its own: ",
+                                                  significant(table.bar_from, 3), significant(table.bar_to, 3)));
+  return table;
 }
 
 Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
@@ -180,12 +235,13 @@ Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
 }
 
 std::string parameter_summary(const CalibratedLaw& law) {
-  std::string text = fmt::format("{:<28} {:<14} {:>26} {:>29} {:>10}\n", "parameter", "symbol", "ours ± standard error",
-                                 "95 % interval", "published");
-  text += std::string(111, '-') + "\n";
+  constexpr const char* kRow = "{:<25} {:>23} {:>20} {:>9}\n";  // 80 columns
+  std::string text =
+      fmt::format(fmt::runtime(kRow), "parameter", "ours ± standard error", "95 % interval", "published") +
+      std::string(80, '-') + "\n";
   for (const Parameter& p : parameters_of(law)) {
-    text += fmt::format("{:<28} {:<14} {:>26} {:>29} {:>10}\n", p.info.name, p.info.symbol,
-                        to_plain(estimate_cell(p).text), interval_of(p), significant(p.published(), 5));
+    text += fmt::format(fmt::runtime(kRow), p.info.name, to_plain(estimate_cell(p).text),
+                        p.says_nothing ? "not determined" : interval_of(p), significant(p.published(), 5));
   }
   return text;
 }

@@ -1,7 +1,10 @@
 // Predictions against DEM, and what their integration took.
 
 #include <algorithm>
+#include <cmath>
 
+#include "app/report/figures.hpp"
+#include "app/report/first_screen.hpp"
 #include "app/report/tables.hpp"
 
 namespace grainlaw::app::report {
@@ -12,33 +15,44 @@ using predict::CurveComparison, predict::PredictionFolder;
 
 Cell seed_or(const std::optional<std::uint64_t>& seed, const char* words) { return seed ? Cell(*seed) : Cell(words); }
 
-/// What `cell` reads of the quantity `name`; no number where the comparison lacks it.
-template <class OfQuantity>
-auto of_quantity(const char* name, const OfQuantity& cell) {
-  return [=](const Within<PredictionFolder, CurveComparison>& entry) -> Cell {
-    const auto& all = entry.it.comparison.quantities;
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& q) { return q.quantity == name; });
-    return found == all.end() ? kNoNumber : cell(*found);
-  };
-}
-
 }  // namespace
 
-Table prediction_summary(const std::vector<PredictionFolder>& predictions) {
-  const auto bias = [](const predict::QuantityComparison& q) { return Cell(significant_padded(q.bias, 2), q.bias); };
-  const auto rms = [](const predict::QuantityComparison& q) { return decimals(100 * q.normalised_rms, 1); };
-  const auto is_mean = [](auto& entry) { return !entry.it.seed; };
-  return table_of("Prediction minus DEM, mean over seeds: bias, and RMS over max|DEM|", "predictions/*/comparison.json",
-                  each_within(predictions, &PredictionFolder::comparisons, is_mean),
-                  {{"path", words, [](auto& entry) { return entry.in.name; }},
-                   {"model", words, [](auto& entry) { return to_string(entry.it.model); }},
-                   {"start", words, [](auto& entry) { return to_string(entry.it.initial); }},
-                   {"{P}* bias", number, of_quantity("P_star", bias)},
-                   {"{P}* RMS [%]", number, of_quantity("P_star", rms)},
-                   {"{s}_{∥} bias", number, of_quantity("s_par", bias)},
-                   {"{s}_{∥} RMS [%]", number, of_quantity("s_par", rms)},
-                   {"{F}_{∥} bias", number, of_quantity("F_par", bias)},
-                   {"{F}_{∥} RMS [%]", number, of_quantity("F_par", rms)}});
+Table unseen_table(const std::vector<chain::PathError>& errors, bool predicted,
+                   const std::vector<PredictionFolder>& predictions) {
+  std::vector<chain::PathError> shown;
+  std::copy_if(errors.begin(), errors.end(), std::back_inserter(shown),
+               [=](const chain::PathError& e) { return (e.prediction != nullptr) == predicted; });
+  const auto link = [&](const chain::PathError& e) {
+    return predicted ? prediction_id(static_cast<std::size_t>(e.prediction - predictions.data())) : std::string();
+  };
+  const auto cell = [&](std::size_t q) {
+    return [=](const chain::PathError& e) {
+      std::string words = fixed(100 * e.error[q], 1);
+      if (std::isfinite(e.in_band[q])) words += " (" + fixed(100 * e.in_band[q], 0) + ")";
+      Cell shade(words, 100 * e.error[q]);
+      shade.heat = heat_of(e.error[q]);
+      shade.link = link(e);
+      return shade;
+    };
+  };
+  Table table = table_of(
+      predicted ? "Predicted paths: error, RMS over max|DEM| of the mean over runs [%]; in brackets the "
+                  "share of rows of single runs within their 95 % band [%]"
+                : "Rehearsed paths, which no fit saw either: error, RMS over the largest value of the law, to "
+                  "first order [%]",
+      predicted ? "predictions/*/comparison.json" : "parameters.json", shown,
+      {{"path", words,
+        [&](const chain::PathError& e) {
+          Cell path(predicted ? e.path : e.path + " (" + to_string(e.kind) + ")");
+          path.link = link(e);
+          return path;
+        }},
+       {"rung", words, [](const chain::PathError& e) { return to_string(e.rung) + (e.recommended ? " ★" : ""); }},
+       {"{P}*", number, cell(0)},
+       {"{s}", number, cell(1)},
+       {"{F}", number, cell(2)}});
+  table.id = predicted ? "unseen" : "rehearsed";
+  return table;
 }
 
 Table prediction_table(const PredictionFolder& prediction) {

@@ -47,7 +47,8 @@ std::string letter_of(std::string_view word) {
   using Letter = std::pair<std::string_view, std::string_view>;
   static constexpr std::array letters{Letter{"alpha", "α"}, Letter{"beta", "β"},   Letter{"gamma", "γ"},
                                       Letter{"delta", "δ"}, Letter{"lambda", "λ"}, Letter{"nu", "ν"},
-                                      Letter{"phi", "φ"},   Letter{"sigma", "σ"}};
+                                      Letter{"phi", "φ"},   Letter{"sigma", "σ"},  Letter{"psi", "ψ"},
+                                      Letter{"chi", "χ"},   Letter{"kappa", "κ"}};
   for (const auto& [name, letter] : letters) {
     if (word == name) return std::string(letter);
   }

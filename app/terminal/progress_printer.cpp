@@ -76,14 +76,22 @@ void ProgressPrinter::finished(std::size_t index) {
 }
 
 std::string ProgressPrinter::status() const {
-  if (unit_.empty()) {
-    const Job& job = jobs_.front();
-    return fmt::format("{}: {:3.0f} %{}", job.name, 100 * job.fraction,
-                       job.stage.empty() ? "" : fmt::format(" of {}", job.stage));
-  }
+  const double elapsed = seconds_since(began_);
   double expected = 0, covered = 0, earlier = 0, worked = 0;
   std::size_t done = 0;
   std::string running;
+  if (unit_.empty()) {
+    for (const Job& job : jobs_) {
+      expected += job.expected;
+      covered += job.expected * (job.done ? 1 : job.fraction);
+      if (job.running) running = job.stage.empty() ? job.name : fmt::format("{}, {}", job.name, job.stage);
+    }
+    const std::string text = fmt::format("{:3.0f} %", expected > 0 ? 100 * covered / expected : 100);
+    const std::string left = elapsed > 1 && covered > 0.02 * expected
+                                 ? fmt::format(", {} left", clock_text(elapsed * (expected - covered) / covered))
+                                 : "";
+    return fmt::format("{}{} ({})", text, left, running);
+  }
   for (const Job& job : jobs_) {
     expected += job.expected;
     covered += job.done ? job.expected : std::min(job.work, 0.99 * job.expected);
@@ -92,7 +100,7 @@ std::string ProgressPrinter::status() const {
     done += job.done ? 1 : 0;
     if (job.running) running += fmt::format("{}{}", running.empty() ? "" : ", ", job.name);
   }
-  const double elapsed = seconds_since(began_), gained = covered - earlier;
+  const double gained = covered - earlier;
   std::string text =
       fmt::format("{:3.0f} %, {} of {} runs", expected > 0 ? 100 * covered / expected : 100, done, jobs_.size());
   if (elapsed > 1 && worked > 0) text += fmt::format(", {}", rate_text(worked / elapsed, unit_));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/report/report.hpp"
+#include "app/terminal/help.hpp"
 #include "model/files/fields_json.hpp"
 
 namespace grainlaw::app {
@@ -15,16 +16,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kWidth = 80;
+
+/// A paragraph beside its word: "needs     memory: ...".
+std::string paragraph(const std::string& word, const std::string& text) {
+  std::string lines;
+  for (const std::string& line : wrapped(text, kWidth - 10))
+    lines += fmt::format("{:<9} {}\n", lines.empty() ? word : "", line);
+  return lines;
+}
+
 std::string advice_text(const predict::PredictionFolder& content) {
-  std::string text = fmt::format("needs     {}: {}\n", to_string(content.needed.rung), content.needed.why) +
-                     fmt::format("use       {}: {}\n", to_string(content.recommended.rung), content.recommended.why);
+  std::string text =
+      paragraph("needs", fmt::format("{}: {}", to_string(content.needed.rung), content.needed.why)) +
+      paragraph("use", fmt::format("{}: {}", to_string(content.recommended.rung), content.recommended.why));
   for (const predict::RungChange& change : content.changes) {
     const predict::RungDifference& d = change.difference;
-    text +=
-        fmt::format("{} instead of {} changes P* by up to {:.1f} %, the stress ratio by {:.4f}, the fabric by {:.4f}\n",
-                    to_string(change.richer), to_string(change.cheaper), 100 * d.P, d.s, d.F);
+    text += paragraph("changes",
+                      fmt::format("{} instead of {}: P* by up to {:.1f} %, the stress ratio by {:.4f}, the fabric by "
+                                  "{:.4f}",
+                                  to_string(change.richer), to_string(change.cheaper), 100 * d.P, d.s, d.F));
   }
-  return text;
+  return text + paragraph("bands", content.bands);
 }
 
 /// Whose rehearsals are in the bands, and the band of whole curves of the recommended rung.
@@ -32,7 +45,7 @@ std::string rehearsals_text(const predict::PredictionFolder& content) {
   if (!content.rehearsals) return "";
   const predict::PathRehearsals& said = *content.rehearsals;
   std::string text =
-      fmt::format("rehearsed {} paths{}, m = {} degrees of freedom", said.paths,
+      fmt::format("{} paths{}, m = {} degrees of freedom", said.paths,
                   said.of_kind ? fmt::format(" ({})", to_string(said.kind)) : " of all kinds", said.paths);
   for (const predict::RehearsedModel& model : said.models) {
     if (model.model != content.recommended.rung) continue;
@@ -40,34 +53,38 @@ std::string rehearsals_text(const predict::PredictionFolder& content) {
                         model.P_star.whole_curve, model.s_par.whole_curve, model.F_par.whole_curve,
                         100 * said.whole_curve_probability);
   }
-  text += "\n";
-  if (!said.outside.empty()) text += fmt::format("          outside rehearsals: {}\n", fmt::join(said.outside, ", "));
+  text = paragraph("rehearsed", text);
+  if (said.outside.empty()) return text;
+  return text + paragraph("", fmt::format("outside rehearsals: {}", fmt::join(said.outside, ", ")));
+}
+
+/// The end of a curve with the half widths of the bands of the mean, and those of a single run below.
+std::string end_text(const predict::PredictedCurve& curve, bool recommended) {
+  const predict::PredictedRow& end = curve.prediction.rows.back();
+  const auto value = [](double x, double half_width) {
+    return std::isfinite(half_width) ? fmt::format("{:.4g} ± {:.2g}", x, half_width) : fmt::format("{:.4g}", x);
+  };
+  const auto half = [](double x) { return std::isfinite(x) ? fmt::format("± {:.2g}", x) : std::string(); };
+  std::string text =
+      fmt::format("{:<9} {:<10} {:<9.5f} {:<17} {:<15} {}\n", to_string(curve.model), to_string(curve.initial), end.nu,
+                  value(end.state.P, end.mean.P), value(end.s_par, end.mean.s_par), value(end.F_par, end.mean.F_par));
+  if (std::isfinite(end.single.P))
+    text += fmt::format("{:<9} {:<20} {:<17} {:<15} {}\n", "", "single run", half(end.single.P), half(end.single.s_par),
+                        half(end.single.F_par));
+  if (recommended) text += fmt::format("{:<9} recommended\n", "");
+  return curve.prediction.unjammed ? text + fmt::format("{:<9} unjammed\n", "") : text;
+}
+
+/// How far a curve is from the runs: a line for each quantity.
+std::string comparison_text(const predict::CurveComparison& entry) {
+  std::string text, model = to_string(entry.model), initial = to_string(entry.initial);
+  const auto share = [](double x) { return std::isfinite(x) ? fmt::format("{:.0f} %", 100 * x) : std::string(); };
+  for (const auto& q : entry.comparison.quantities) {
+    text += fmt::format("{:<9} {:<10} {:<8} {:>+9.4f} {:>8.1f} % {:>12} {:>12}\n", std::exchange(model, ""),
+                        std::exchange(initial, ""), q.quantity, q.bias, 100 * q.normalised_rms, share(q.coverage_mean),
+                        share(q.coverage_single));
+  }
   return text;
-}
-
-/// The bands at a row: half widths of the mean curve's and of a single run's.
-std::string bands_text(const predict::PredictedRow& row) {
-  if (!std::isfinite(row.mean.P)) return "";
-  std::string text = fmt::format("{:<18}  ±", "");
-  for (const auto& [name, band] : {std::pair{"P*", &predict::RowBand::P},
-                                   {"s_par", &predict::RowBand::s_par},
-                                   {"F_par", &predict::RowBand::F_par}}) {
-    if (!std::isfinite(row.mean.*band)) continue;
-    text += fmt::format("  {} {:.2g}", name, row.mean.*band);
-    if (std::isfinite(row.single.*band)) text += fmt::format(" (single run {:.2g})", row.single.*band);
-  }
-  return text + "\n";
-}
-
-/// Shares of the DEM rows within the bands.
-std::string coverage_text(const predict::Comparison& comparison) {
-  std::string text;
-  for (const auto& q : comparison.quantities) {
-    if (!std::isfinite(q.coverage_mean)) continue;
-    text += fmt::format("  {} {:.0f} %", q.quantity, 100 * q.coverage_mean);
-    if (std::isfinite(q.coverage_single)) text += fmt::format(" (single run {:.0f} %)", 100 * q.coverage_single);
-  }
-  return text.empty() ? text : fmt::format("{:<18}  within the bands{}\n", "", text);
 }
 
 }  // namespace
@@ -114,9 +131,9 @@ std::string text_of(const chain::TargetCalibration& calibration, const chain::Pr
                         s.strain_rate, s.time_step_fraction, s.densities, s.shear_strain, r.seconds,
                         percent(r.expected_error), percent(r.error));
   }
-  text += text_of(run.rounds.back()) + "\n";
-  text += fmt::format("sheared at {}: the laws of shear are known there, beyond they are extrapolated\n",
-                      fmt::join(calibration.planned.densities, ", "));
+  text += paragraph("reached", text_of(run.rounds.back()));
+  text += paragraph("sheared", fmt::format("at {}: the laws of shear are known there, beyond they are extrapolated",
+                                           fmt::join(calibration.planned.densities, ", ")));
   return text + fmt::format("wanted {:.2f} %: {}\n{}\n", 100 * target.error, to_string(run.outcome),
                             (output / "parameters.json").string());
 }
@@ -144,37 +161,33 @@ OrderedJson summary_of(const predict::PredictionFolder& content, const fs::path&
 }
 
 std::string text_of(const predict::PredictionFolder& content, const fs::path& output) {
-  std::string text = advice_text(content) + "bands     " + content.bands + "\n" + rehearsals_text(content);
+  std::string text = advice_text(content) + rehearsals_text(content);
   const auto recommended_first = [&](const auto& entry) { return entry.model != content.recommended.rung; };
   std::vector<predict::PredictedCurve> curves;
   for (const predict::PredictedCurve& curve : content.curves) {
     if (!curve.seed && !curve.prediction.rows.empty()) curves.push_back(curve);
   }
   std::ranges::stable_sort(curves, {}, recommended_first);
-  for (const predict::PredictedCurve& curve : curves) {
-    const predict::PredictedRow& end = curve.prediction.rows.back();
-    text += fmt::format("{:<9} {:<8} end: nu {:.5f}  P* {:.6g}  s_par {:.5f}  F_par {:.5f}{}{}\n",
-                        to_string(curve.model), to_string(curve.initial), end.nu, end.state.P, end.s_par, end.F_par,
-                        curve.prediction.unjammed ? "  (unjammed)" : "",
-                        curve.model == content.recommended.rung ? "  (recommended)" : "");
-    text += bands_text(end);
-  }
+  if (!curves.empty())
+    text += fmt::format("\nThe end of the path, with 95 % bands\n{:<9} {:<10} {:<9} {:<17} {:<15} {}\n", "rung",
+                        "start", "nu", "P*", "s_par", "F_par");
+  for (const predict::PredictedCurve& curve : curves) text += end_text(curve, curve.model == content.recommended.rung);
   for (const predict::FailedCurve& failed : content.failures) {
     if (!failed.seed)
-      text += fmt::format("{:<9} {:<8} failed: {}\n", to_string(failed.model), to_string(failed.initial), failed.error);
+      text += paragraph(to_string(failed.model), fmt::format("{} failed: {}", to_string(failed.initial), failed.error));
   }
   std::vector<predict::CurveComparison> means;
   for (const predict::CurveComparison& entry : content.comparisons) {
     if (!entry.seed) means.push_back(entry);
   }
   std::ranges::stable_sort(means, {}, recommended_first);
-  for (const predict::CurveComparison& entry : means) {
-    text += fmt::format("{:<9} {:<8}", to_string(entry.model), to_string(entry.initial));
-    for (const auto& q : entry.comparison.quantities)
-      text += fmt::format("  {} bias {:+.4f} rms {:.1f} %", q.quantity, q.bias, 100 * q.normalised_rms);
-    text += "\n" + coverage_text(entry.comparison);
-  }
-  return text + (output / "prediction.json").string() + "\n";
+  if (!means.empty())
+    text += fmt::format(
+        "\nFrom the DEM runs, mean over seeds; shares of rows within the bands\n{:<9} {:<10} {:<8} {:>9} {:>10} "
+        "{:>12} {:>12}\n",
+        "rung", "start", "quantity", "bias", "rms", "mean", "single run");
+  for (const predict::CurveComparison& entry : means) text += comparison_text(entry);
+  return text + "\n" + (output / "prediction.json").string() + "\n";
 }
 
 }  // namespace grainlaw::app

@@ -1,33 +1,36 @@
 #include "app/terminal/study_text.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "app/terminal/help.hpp"
 #include "model/files/one_line.hpp"
 
 namespace grainlaw::app {
 namespace {
 
-constexpr std::size_t kNote = 120;  // characters; study.json has them all
+constexpr std::size_t kNote = 200;  // characters; study.json has them all
 
 std::string percent(double share) { return std::isfinite(share) ? fmt::format("{:.2f}%", 100 * share) : "-"; }
 
-std::string line_of(const chain::SettingResult& r, chain::Packings packings, std::size_t width) {
+/// The name with what is said of it, the numbers below.
+std::string lines_of(const chain::SettingResult& r, chain::Packings packings) {
   const chain::SettingOutcome& o = r.outcome;
   const auto error = [packings](double x) {
     return packings == chain::Packings::chosen || !std::isfinite(x) ? percent(x) : fmt::format("{:.2f}", x);
   };
-  std::string text = fmt::format("{:<{}} {:>8} {:>14.3e} {:>9.1f} {:>7.1f} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}", o.name,
-                                 width, o.seeds.size(), o.cost.particle_steps, o.cost.seconds, o.cost.fit_seconds,
-                                 error(r.error), error(r.floor), error(r.sampling), error(r.reached),
-                                 error(r.reached_error), percent(o.energy_residual));
-  if (chain::near_the_stop(o.energy_residual)) text += "  near the energy balance's stop";
-  if (!r.dominated_by.empty()) text += "  dominated";
-  if (!o.model.empty()) text += "  " + o.model;
-  if (!o.note.empty()) text += "  " + one_line(o.note, kNote);
-  return text + "\n";
+  std::string name = o.name;
+  if (chain::near_the_stop(o.energy_residual)) name += "  near the energy balance's stop";
+  if (!r.dominated_by.empty()) name += "  dominated";
+  if (!o.model.empty()) name += "  " + o.model;
+  if (!o.note.empty()) name += "  " + one_line(o.note, kNote);
+  return fmt::format("{}\n{:>5} {:>9.2e} {:>8.1f} {:>6.1f} {:>7} {:>7} {:>8} {:>8} {:>7} {:>6}\n",
+                     fmt::join(wrapped(name, 80), "\n  "), o.seeds.size(), o.cost.particle_steps, o.cost.seconds,
+                     o.cost.fit_seconds, error(r.error), error(r.floor), error(r.sampling), error(r.reached),
+                     error(r.reached_error), percent(o.energy_residual));
 }
 
 std::string verdict_of(const chain::SettingResult& judged) {
@@ -41,19 +44,18 @@ std::string verdict_of(const chain::SettingResult& judged) {
     text += " may be dominated: cheaper and as good or better, within chance: " + perhaps;
   else
     text += " is not dominated";
-  text += "\n";
-  return text;
+  std::string lines;
+  for (const std::string& line : wrapped(text, 80)) lines += line + "\n";
+  return lines;
 }
 
 }  // namespace
 
 std::string study_text(const chain::SettingsStudy& study) {
-  std::size_t width = 7;
-  for (const chain::SettingResult& r : study.results) width = std::max(width, r.outcome.name.size());
-  std::string text =
-      fmt::format("{:<{}} {:>8} {:>14} {:>9} {:>7} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}\n", "setting", width, "packings",
-                  "particle-steps", "seconds", "of fit", "error", "floor", "sampling", "reached", "+-", "energy");
-  for (const chain::SettingResult& r : study.results) text += line_of(r, study.packings, width);
+  std::string text = fmt::format("{:>5} {:>9} {:>8} {:>6} {:>7} {:>7} {:>8} {:>8} {:>7} {:>6}\n", "seeds", "work",
+                                 "seconds", "of fit", "error", "floor", "sampling", "reached", "+-", "energy");
+  for (const chain::SettingResult& r : study.results) text += lines_of(r, study.packings);
+  text += "work in particle-steps\n";
   if (study.packings == chain::Packings::given) text += "errors in units of the packings' chance\n";
   return text + verdict_of(study.results.at(study.judged));
 }
@@ -62,10 +64,10 @@ std::string study_text(const predict::IntegratorStudy& study) {
   std::string text =
       fmt::format("least microseconds of a path with an error of at most {:.0e}\n", predict::kWantedError);
   for (const predict::WorkPrecision& panel : study.panels) {
-    text += fmt::format("{}: {}\n", panel.path.name, panel.path.description);
+    text += fmt::format("{}\n", fmt::join(wrapped(panel.path.name + ": " + panel.path.description, 78), "\n  "));
     for (const predict::Integrator& integrator : predict::kIntegrators) {
       const predict::WorkPoint* point = predict::quickest(panel, predict::kWantedError, &integrator);
-      text += point ? fmt::format("  {:<7} {:8.1f} us  {:6} right-hand sides  error {:.1e}  (accuracy {:.1e})\n",
+      text += point ? fmt::format("  {:<7} {:8.1f} us {:6} right-hand sides, error {:.1e} (accuracy {:.1e})\n",
                                   to_string(integrator), point->microseconds, point->rhs_evaluations, point->error,
                                   point->accuracy)
                     : fmt::format("  {:<7} not reached\n", to_string(integrator));
@@ -79,25 +81,28 @@ std::string study_text(const predict::IntegratorStudy& study) {
 }
 
 std::string study_text(const chain::BandsStudy& study) {
-  std::size_t width = 4;
-  for (const chain::BandCoverage& c : study.coverages) width = std::max(width, c.path.size());
+  constexpr const char* kRow = "  {:<7} {:>5} {:>4} {:>9} {:>9} {:>9} {:>8} {:>6} {:>7}\n";
   std::string text =
-      fmt::format("{:<9} {:<9} {:<{}} {:>2} {:<7} {:>5} {:>3} {:>9} {:>9} {:>9} {:>8} {:>5} {:>7}\n", "model", "kind",
-                  "path", width, "n", "", "rows", "m", "bias/w", "rms/w", "tau/w", "without", "mean", "single");
+      fmt::format(fmt::runtime(kRow), "", "rows", "m", "bias/w", "rms/w", "tau/w", "without", "mean", "single");
+  std::string heading;
   for (const chain::BandCoverage& c : study.coverages) {
-    text += fmt::format(
-        "{:<9} {:<9} {:<{}} {:>2} {:<7} {:>5} {:>3}{} {:>+8.5f} {:>9.5f} {:>9.5f} {:>7.0f}% {:>4.0f}% {:>6.0f}%\n",
-        to_string(c.model), to_string(c.kind), c.path, width, c.packings, to_string(c.quantity), c.rows,
-        c.degrees_of_freedom, c.of_kind ? " " : "*", c.bias, c.rms, c.tau, 100 * c.without, 100 * c.mean,
-        100 * c.single);
+    std::string above = fmt::format("{}: {}, {}, n = {}\n", c.path, to_string(c.model), to_string(c.kind), c.packings);
+    if (above != heading) text += heading = std::move(above);
+    const auto share = [](double x) { return fmt::format("{:.0f}%", 100 * x); };
+    text += fmt::format(fmt::runtime(kRow), to_string(c.quantity), c.rows,
+                        fmt::format("{}{}", c.degrees_of_freedom, c.of_kind ? "" : "*"), fmt::format("{:+.5f}", c.bias),
+                        fmt::format("{:.5f}", c.rms), fmt::format("{:.5f}", c.tau), share(c.without), share(c.mean),
+                        share(c.single));
   }
-  text += "* too few others of the kind: all\nover the paths, each left out (least of a path)\n";
+  constexpr const char* kSum = "{:<9} {:<8} {:>5} {:>8} {:>6} {:>6} {:>7} {:>6} {:>7} {:>9}\n";
+  text += "* too few others of the kind: all\n\nover the paths, each left out; least: of a path\n";
+  text += fmt::format(fmt::runtime(kSum), "model", "quantity", "paths", "without", "mean", "least", "single", "least",
+                      "curves", "promised");
   for (const chain::CoverageSummary& s : study.summaries) {
-    text += fmt::format(
-        "{:<9} {:<7} {:>3} paths  without {:3.0f}%  mean {:5.1f}% ({:.0f})  single run {:5.1f}% ({:.0f})  whole "
-        "curves {:.0f}% of {:.0f}\n",
-        to_string(s.model), to_string(s.quantity), s.paths, 100 * s.without, 100 * s.mean, 100 * s.least_mean,
-        100 * s.single, 100 * s.least_single, 100 * s.whole, 100 * s.promised_whole);
+    const auto share = [](double x) { return fmt::format("{:.0f}%", 100 * x); };
+    text += fmt::format(fmt::runtime(kSum), to_string(s.model), to_string(s.quantity), s.paths, share(s.without),
+                        share(s.mean), share(s.least_mean), share(s.single), share(s.least_single), share(s.whole),
+                        share(s.promised_whole));
   }
   return text;
 }

@@ -308,4 +308,28 @@ OrderedJson study_to_json(const SettingsStudy& study) {
   return document;
 }
 
+SettingsStudy study_from_json(const Json& document) {
+  SettingsStudy study;
+  study.kind = document.at("study");
+  study.error = document.at("error");
+  study.packings = study.kind == "chain" ? Packings::chosen : Packings::given;
+  study.base = document.at("base");
+  for (const Json& object : document.at("settings")) {
+    SettingResult& r = study.results.emplace_back();
+    r.outcome.name = object.at("setting");
+    r.outcome.cost = {object.at("particle_steps"), object.at("seconds"), object.at("fit_seconds")};
+    r.outcome.energy_residual = object.at("energy_residual");
+    r.outcome.note = object.at("note");
+    r.error = number_or_nan(object.at("error"));
+    r.floor = number_or_nan(object.at("floor"));
+    r.sampling = number_or_nan(object.at("sampling"));
+    r.noise = number_or_nan(object.at("noise"));
+    r.reached = number_or_nan(object.at("reached"));
+    r.reached_error = number_or_nan(object.at("reached_standard_error"));
+    r.dominated_by = object.at("dominated_by").get<std::vector<std::string>>();
+    if (r.outcome.name == document.at("default").at("setting")) study.judged = study.results.size() - 1;
+  }
+  return study;
+}
+
 }  // namespace grainlaw::chain

@@ -83,4 +83,7 @@ SettingsStudy study_of(const std::string& kind, const std::string& error, Packin
 /// What study.json holds, provenance aside.
 OrderedJson study_to_json(const SettingsStudy& study);
 
+/// What its figure shows, out of study.json: of the quantities nothing. Throws an exception of the JSON library for what is none.
+SettingsStudy study_from_json(const Json& document);
+
 }  // namespace grainlaw::chain

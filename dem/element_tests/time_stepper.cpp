@@ -13,6 +13,7 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr double kMaxTimeSteps = 1e12;  // per segment: years of work; beyond it a rate was mistyped
+constexpr double kIsostatic = 6;        // contacts of a sphere that bears load; with fewer no packing is rigid, and no flow quasi-static
 
 /// The state as a new run sees it: clock and accelerations forgotten, the ledger is opened later.
 State fresh(State state) {
@@ -88,7 +89,7 @@ class TimeStepper : public Stepper {
   void judge(const Observation& row, const Observation& first, std::size_t index, int segment) override {
     const double residual = energy_.residual(row, first);
     imbalance_.note(residual, options_.warn_energy_residual, row.nu);
-    rate_.note(row.inertial_number, options_.warn_inertial_number, row.nu);
+    if (row.C_star >= kIsostatic) rate_.note(row.inertial_number, options_.warn_inertial_number, row.nu);
     if (residual <= options_.stop_energy_residual) return;
     throw Error(fmt::format(
         "energy balance: residual {:.3g} at row {} (segment {}, nu = {:.6g}, step {}) is beyond {}; the results would "

@@ -5,7 +5,7 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr SealedFormat kFormat{"GRAINLAW", kStateFileVersion, "state file"};
+constexpr SealedFormat kFormat{kStateMagic, kStateFileVersion, "state file"};
 
 /// The order of the numbers in the file, told once for writing and reading: `visit` gets each scalar, `array` each
 /// array of the packing's size, `optional_array` those that a resting state does not have.

@@ -6,12 +6,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 
 #include "dem/engine/state.hpp"
 #include "dem/files/sealed_file.hpp"
 
 namespace grainlaw::dem {
 
+inline constexpr std::string_view kStateMagic = "GRAINLAW";  ///< what the file begins with
 inline constexpr std::uint32_t kStateFileVersion = 1;  ///< grows with every change of the layout
 
 /// Throws Error naming the file when it cannot be written whole or a number is not finite; the earlier file under that

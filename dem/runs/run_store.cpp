@@ -41,6 +41,11 @@ std::string run_key(const Json& request) {
   return sha256(Json{{"engine_version", kEngineVersion}, {"request", request}}.dump());
 }
 
+bool is_finished(const fs::path& folder, const std::string& key) {
+  std::error_code error;  // what cannot be looked at is run again
+  return fs::exists(folder / key / "run.json", error);
+}
+
 RunStore::RunStore(const fs::path& parent, const std::string& name) : root_(make_subfolder(parent, name)) {
   const fs::path file = root_ / ".lock";
   lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);

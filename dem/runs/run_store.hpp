@@ -14,6 +14,9 @@ namespace grainlaw::dem {
 /// 64 hexadecimal digits. `request` must hold everything that changes the result and nothing else.
 std::string run_key(const Json& request);
 
+/// Whether FOLDER/<key> holds a finished run, for those who only look: nothing is locked, no digest is compared.
+bool is_finished(const std::filesystem::path& folder, const std::string& key);
+
 /// Scratch files of a run in progress.
 inline constexpr const char* kCheckpoint = "checkpoint";
 inline constexpr const char* kPreviousCheckpoint = "checkpoint.previous";

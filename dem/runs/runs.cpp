@@ -80,6 +80,16 @@ Json request_of(const TestSetup& test) {
 std::string preparation_key(const PreparationOptions& options) { return run_key(request_of(options)); }
 std::string test_key(const TestSetup& test) { return run_key(request_of(test)); }
 
+double expected_work(const PreparationOptions& options) {
+  return static_cast<double>(options.packing.particles) * expected_steps(options);
+}
+
+double expected_work(const TestSetup& test) {
+  const double particles = test.given ? static_cast<double>(test.given->packing.size())
+                                      : static_cast<double>(test.preparation.packing.particles);
+  return particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path)));
+}
+
 Json ensure_preparation(const RunStore& store, const PreparationOptions& options, const ResumePolicy& policy,
                         const RunControl& control) {
   const Json request = request_of(options);
@@ -160,8 +170,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
 
 Job preparation_job(const RunStore& store, const PreparationOptions& options, const std::string& name,
                     const Execution& execution) {
-  const double work = static_cast<double>(options.packing.particles) * expected_steps(options);
-  return {name, store.find(preparation_key(options)) ? 0 : work, std::nullopt,
+  return {name, store.find(preparation_key(options)) ? 0 : expected_work(options), std::nullopt,
           [&store, &options, policy = policy_of(execution, name)](int threads, const RunControl& control) {
             PreparationOptions with_threads = options;
             with_threads.engine.threads = threads;
@@ -171,10 +180,7 @@ Job preparation_job(const RunStore& store, const PreparationOptions& options, co
 
 Job test_job(const RunStore& store, const TestSetup& test, const std::string& name, std::optional<std::size_t> after,
              const Execution& execution) {
-  const double particles = test.given ? static_cast<double>(test.given->packing.size())
-                                      : static_cast<double>(test.preparation.packing.particles);
-  const double work = particles * std::max(1.0, expected_steps(test.preparation, resolve(test.path)));
-  return {name, store.find(test_key(test)) ? 0 : work, after,
+  return {name, store.find(test_key(test)) ? 0 : expected_work(test), after,
           [&store, &test, policy = policy_of(execution, name)](int threads, const RunControl& control) {
             TestSetup with_threads = test;
             with_threads.preparation.engine.threads = threads;

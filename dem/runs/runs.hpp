@@ -34,6 +34,10 @@ struct TestSetup {
 std::string preparation_key(const PreparationOptions& options);
 std::string test_key(const TestSetup& test);
 
+/// What each is expected to take, without relaxations [particle-steps].
+double expected_work(const PreparationOptions& options);
+double expected_work(const TestSetup& test);
+
 /// Runs the preparation unless it is in the store, from a checkpoint if there is one; its record (run.json). Files:
 /// loading.csv, unloading.csv and one state file for each kept state. Interrupted leaves a checkpoint.
 Json ensure_preparation(const RunStore& store, const PreparationOptions& options, const ResumePolicy& policy,

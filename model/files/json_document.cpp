@@ -190,8 +190,9 @@ Json parse_json(std::string_view text, const std::string& name, JsonSource sourc
   if (text.find('\0') != std::string_view::npos) {
     throw InvalidInput(fmt::format("{}: holds a NUL byte; the file must be one JSON document in UTF-8", name));
   }
+  const bool comments = source == JsonSource::user;  // are skipped
   StrictBuilder builder(name, source);
-  if (!Json::sax_parse(text.begin(), text.end(), &builder)) {
+  if (!Json::sax_parse(text.begin(), text.end(), &builder, Json::input_format_t::json, true, comments)) {
     throw InvalidInput(fmt::format("{}: is not a JSON document", name));
   }
   return builder.take();

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxJsonBytes = 64u << 20;  ///< larger documents a
 inline constexpr int kMaxJsonDepth = 32;                 ///< deeper nesting is refused while parsing
 
 enum class JsonSource {
-  user,  ///< 2000.0 and 2e3 count as the integer 2000; -0 is refused
+  user,  ///< 2000.0 and 2e3 count as the integer 2000; -0 is refused; comments (//, /* */) are skipped
   own,   ///< numbers exactly as written by write_json
 };
 

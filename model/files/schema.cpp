@@ -1,9 +1,11 @@
 #include "model/files/schema.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <valijson/adapters/nlohmann_json_adapter.hpp>
@@ -15,31 +17,36 @@
 #include "grainlaw_schemas.hpp"
 #include "model/files/one_line.hpp"
 #include "model/vocabulary/error.hpp"
+#include "model/vocabulary/nearest_word.hpp"
 
 namespace grainlaw {
 namespace {
 
-/// Place of the first violation, outermost key first; array indices are decimal numbers. Empty place: the document
-/// itself.
-struct Violation {
-  bool found = false;
-  std::vector<std::string> place;
-};
+/// Of a violation, outermost key first; array indices are decimal numbers. Empty: the document itself.
+using Place = std::vector<std::string>;
 
-/// By the schema library; `schema` must be free of references. The violation deepest in the document comes first.
-Violation first_violation(const Json& document, const Json& schema) {
+constexpr std::size_t kMostViolations = 50;  // that are told of one document
+
+/// By the schema library; `schema` must be free of references. The violation deepest in the document comes first, then what it
+/// makes of the objects around it, then others; not more than kMostViolations.
+std::vector<Place> violations_by_library(const Json& document, const Json& schema) {
   valijson::Schema compiled;
   valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(schema), compiled);
   valijson::ValidationResults results;
   if (valijson::Validator().validate(compiled, valijson::adapters::NlohmannJsonAdapter(document), &results)) return {};
-  Violation violation{true, {}};
+  std::vector<Place> places;
   valijson::ValidationResults::Error error;
-  if (!results.popError(error)) return violation;
-  for (std::size_t i = 1; i < error.context.size(); ++i) {  // the first element is "<root>"
-    const std::string& part = error.context[i];             // "[key]"
-    violation.place.push_back(part.size() >= 2 && part.front() == '[' ? part.substr(1, part.size() - 2) : part);
+  while (results.popError(error)) {
+    Place place;
+    for (std::size_t i = 1; i < error.context.size(); ++i) {  // the first element is "<root>"
+      const std::string& part = error.context[i];             // "[key]"
+      place.push_back(part.size() >= 2 && part.front() == '[' ? part.substr(1, part.size() - 2) : part);
+    }
+    if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+    if (places.size() == kMostViolations) break;
   }
-  return violation;
+  if (places.empty()) places.emplace_back();
+  return places;
 }
 
 Json parsed(const std::string& file) {
@@ -105,53 +112,33 @@ std::string expected_text(const Json& s) {
   return type == "object" ? "an object" : "";
 }
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
+/// Keys of `value` that the schema does not know and those that it misses, with remedies.
+std::vector<std::string> wrong_keys(const Json& value, const Json& s) {
+  std::vector<std::string> texts;
+  if (!value.is_object() || !s.contains("properties")) return texts;
+  std::vector<std::string> known;
+  for (const auto& property : s["properties"].items()) {
+    if (!property.key().starts_with('$')) known.push_back(property.key());
   }
-  return row[b.size()];
-}
-
-/// The first key of `value` that the schema does not know, with a remedy; empty when all are known.
-std::string unknown_key(const Json& value, const Json& s) {
-  if (!value.is_object() || !s.contains("properties") || s.value("additionalProperties", Json(true)) != Json(false))
-    return "";
   for (const auto& item : value.items()) {
-    if (s["properties"].contains(item.key())) continue;
-    std::string nearest, all;
-    for (const auto& known : s["properties"].items()) {
-      all += fmt::format("{}{}", all.empty() ? "" : ", ", known.key());
-      const std::size_t distance = item.key().size() > 64 ? 65 : edit_distance(item.key(), known.key());
-      if (distance <= 2 && (nearest.empty() || distance < edit_distance(item.key(), nearest))) nearest = known.key();
-    }
-    const std::string remedy =
-        nearest.empty() ? fmt::format("known keys: {}", all) : fmt::format("did you mean '{}'?", nearest);
-    return fmt::format("unknown key '{}'; {}", one_line(item.key(), 60), remedy);
+    if (s["properties"].contains(item.key()) || s.value("additionalProperties", Json(true)) != Json(false)) continue;
+    const std::string nearest = nearest_word(item.key(), known);
+    texts.push_back(fmt::format("unknown key '{}'; {}", one_line(item.key(), 60),
+                                nearest.empty() ? fmt::format("known keys: {}", fmt::join(known, ", "))
+                                                : fmt::format("did you mean '{}'?", nearest)));
+    if (texts.size() == kMostViolations) break;
   }
-  return "";
-}
-
-std::string missing_key(const Json& value, const Json& s) {
-  if (!value.is_object() || !s.contains("required")) return "";
-  for (const Json& key : s["required"]) {
+  for (const Json& key : s.value("required", Json::array())) {
     if (value.contains(key.get<std::string>())) continue;
     const Json& wanted = s["properties"][key.get<std::string>()];
-    return fmt::format("misses the key '{}'; give {}", key.get<std::string>(),
-                       wanted.value("description", expected_text(wanted)));
+    texts.push_back(fmt::format("misses the key '{}'; give {}", key.get<std::string>(),
+                                wanted.value("description", expected_text(wanted))));
   }
-  return "";
+  return texts;
 }
 
-std::string complaint(const Json& value, const Json& s) {
-  for (const auto& text : {unknown_key(value, s), missing_key(value, s)}) {
-    if (!text.empty()) return text;
-  }
+/// What a value is that the schema does not allow, and what it should be.
+std::string wrong_value(const Json& value, const Json& s) {
   std::string got = one_line(value.is_structured() && value.size() > 8
                                  ? fmt::format("{} of {} elements", value.type_name(), value.size())
                                  : value.dump(-1, ' ', false, Json::error_handler_t::replace),
@@ -172,24 +159,24 @@ bool all_different(const Json& array) {
 
 /// Length and uniqueness of arrays. The library compares and reports every pair of elements: too slow for hostile
 /// input.
-Violation first_array_violation(const Json& value, const Json& s) {
+std::optional<Place> first_array_violation(const Json& value, const Json& s) {
   if (value.is_array() && s.contains("items")) {
-    if (value.size() > s.value("maxItems", std::size_t{1000000})) return {true, {}};
-    if (s.value("uniqueItems", false) && !all_different(value)) return {true, {}};
+    if (value.size() > s.value("maxItems", std::size_t{1000000})) return Place{};
+    if (s.value("uniqueItems", false) && !all_different(value)) return Place{};
   }
-  if (!value.is_structured()) return {};
+  if (!value.is_structured()) return std::nullopt;
   for (const auto& item : value.items()) {
     const Json* next = nullptr;
     if (value.is_array() && s.contains("items")) next = &s["items"];
     if (value.is_object() && s.contains("properties") && s["properties"].contains(item.key()))
       next = &s["properties"][item.key()];
     if (next == nullptr) continue;
-    Violation violation = first_array_violation(item.value(), *next);
-    if (!violation.found) continue;
-    violation.place.insert(violation.place.begin(), item.key());
+    std::optional<Place> violation = first_array_violation(item.value(), *next);
+    if (!violation) continue;
+    violation->insert(violation->begin(), item.key());
     return violation;
   }
-  return {};
+  return std::nullopt;
 }
 
 Json without_unique_items(Json node) {
@@ -211,7 +198,8 @@ struct Schemas {
                                       {Schema::parameters, "parameters.schema.json"},
                                       {Schema::study, "study.schema.json"},
                                       {Schema::study_settings, "study_settings.schema.json"},
-                                      {Schema::plan, "plan.schema.json"}}) {
+                                      {Schema::plan, "plan.schema.json"},
+                                      {Schema::prior, "prior.schema.json"}}) {
       whole[which] = load(file);
       for_library[which] = without_unique_items(whole[which]);
     }
@@ -223,18 +211,14 @@ const Schemas& schemas_built_in() {
   return all;
 }
 
-}  // namespace
-
-const Json& schema(Schema which) { return schemas_built_in().whole.at(which); }
-
-void check_schema(const Json& document, Schema which, const std::string& name) {
-  Violation violation = first_array_violation(document, schema(which));
-  if (!violation.found) violation = first_violation(document, schemas_built_in().for_library.at(which));
-  if (!violation.found) return;
+/// "NAME: KEY: got ...; give ...", one for each wrong key there; where there is none, for the value itself unless what is
+/// wrong with it lies `within`.
+std::vector<std::string> violation_texts(const Json& document, Schema which, const std::string& name,
+                                         const Place& violation, bool within) {
   const Json* value = &document;
   const Json* s = &schema(which);
   std::string place;
-  for (const std::string& part : violation.place) {
+  for (const std::string& part : violation) {
     // A schema without a subschema for this part (anyOf) describes the part itself.
     const Json* next = nullptr;
     if (value->is_array() && s->contains("items")) {
@@ -254,7 +238,37 @@ void check_schema(const Json& document, Schema which, const std::string& name) {
     }
     s = next;
   }
-  throw InvalidInput(fmt::format("{}: {}{}", name, place.empty() ? "" : place + ": ", complaint(*value, *s)));
+  std::vector<std::string> texts = wrong_keys(*value, *s);
+  if (texts.empty() && !within) texts.push_back(wrong_value(*value, *s));
+  for (std::string& text : texts) text = fmt::format("{}: {}{}", name, place.empty() ? "" : place + ": ", text);
+  return texts;
+}
+
+}  // namespace
+
+const Json& schema(Schema which) { return schemas_built_in().whole.at(which); }
+
+std::vector<std::string> schema_violations(const Json& document, Schema which, const std::string& name) {
+  std::vector<Place> places;
+  if (const auto of_array = first_array_violation(document, schema(which)))
+    places = {*of_array};
+  else
+    places = violations_by_library(document, schemas_built_in().for_library.at(which));
+  std::vector<std::string> all;
+  for (auto place = places.begin(); place != places.end(); ++place) {
+    const bool within = std::any_of(places.begin(), place, [&](const Place& inner) {
+      return inner.size() >= place->size() && std::equal(place->begin(), place->end(), inner.begin());
+    });
+    for (std::string& text : violation_texts(document, which, name, *place, within)) {
+      if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(std::move(text));
+    }
+  }
+  return all;
+}
+
+void check_schema(const Json& document, Schema which, const std::string& name) {
+  const std::vector<std::string> violations = schema_violations(document, which, name);
+  if (!violations.empty()) throw InvalidInput(violations.front());
 }
 
 }  // namespace grainlaw

@@ -3,17 +3,21 @@
 // user to give comes from the schema: type, range and description of the key.
 
 #include <string>
+#include <vector>
 
 #include "model/files/json_document.hpp"
 
 namespace grainlaw {
 
-enum class Schema { spec, path, test, dataset, parameters, study, study_settings, plan };
+enum class Schema { spec, path, test, dataset, parameters, study, study_settings, plan, prior };
 
 /// The schema with every reference replaced by what it refers to.
 const Json& schema(Schema which);
 
 /// Throws InvalidInput "NAME: KEY: got ...; give ..." for the first violation.
 void check_schema(const Json& document, Schema which, const std::string& name);
+
+/// Likewise all violations, one line each, the first one first; none for a document that obeys.
+std::vector<std::string> schema_violations(const Json& document, Schema which, const std::string& name);
 
 }  // namespace grainlaw

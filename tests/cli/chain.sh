@@ -11,13 +11,20 @@ JSON
 echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "UNI", "extent": {"target_nu": 0.80}}], "rows": 40}' >path.json
 
 "$grainlaw" calibrate spec.json -o out --threads 2 >first.txt 2>log || fail "calibrate: $(tail -1 log)"
-for file in spec.resolved.json parameters.json calibration.json dataset/dataset.json dataset/ISO-unloading-s1.csv dataset/D2-0.70-s2.csv; do
+for file in spec.resolved.json parameters.json calibration.json fitted_paths.json dataset/dataset.json dataset/ISO-unloading-s1.csv dataset/D2-0.70-s2.csv; do
   [[ -s out/$file ]] || fail "no $file"
 done
 grep -q 'pressure.p0' first.txt || fail "no table on stdout"
 grep -q $'\x1b' log && fail "escape sequences in a log"
 head -1 out/dataset/D2-0.70-s1.csv | grep -q '^time\[s\],segment,strain_xx,' || fail "header"
 grep -Eiq '(nan|inf)(,|$)' out/dataset/*.csv && fail "a non-finite number in a series"
+
+# the packing of the middle density: sheared along the first axis and the last, contacts and forces follow
+jq -e '.test == "D2-0.74-s1" and .horizontal == "x" and .vertical == "z" and (.before.circles | length) > 20 and (.after.chains | length) > 20
+  and ([.before, .after | .count | length] == [18, 18]) and .after.width > .before.width * 1.1
+  and ((.after.force | (.[8] + .[9]) / (.[0] + .[17])) > 1.2 * (.before.force | (.[8] + .[9]) / (.[0] + .[17])))' \
+  out/dataset/pictures.json >/dev/null || fail "pictures.json: $(head -c 300 out/dataset/pictures.json)"
+cp out/dataset/pictures.json pictures.json
 
 # finished runs are found, one thread gives the same bits, and the resolved spec is a spec
 "$grainlaw" calibrate out/spec.resolved.json -o out --threads 1 --json >second.json 2>log
@@ -33,6 +40,8 @@ before=$(digest out)
 values() { sed '/"provenance"/,$d' "$1"; }
 diff <(values out/parameters.json) <(values refit/parameters.json) || fail "refit differs"
 [[ ! -e refit/runs ]] || fail "refit ran DEM"
+cmp pictures.json out/dataset/pictures.json && cmp pictures.json single/dataset/pictures.json && cmp pictures.json refit/dataset/pictures.json ||
+  fail "pictures differ: on one thread, from the store, or from the data set"
 "$grainlaw" calibrate --dataset out -o refit --coupling single --starts 2 --quiet >/dev/null || [[ $? == 3 ]]
 grep -q '"coupling": "single"' refit/parameters.json && grep -q '"tried": 2' refit/calibration.json || fail "coupling, starts"
 "$grainlaw" calibrate --dataset out -o refit --loss huber --quiet >/dev/null || [[ $? == 3 ]]
@@ -80,7 +89,7 @@ grep -q '^bands     none: the parameters have no covariance' text && [[ $(tail -
 
 # a path becomes a rehearsal: in parameters.json, beside the data set, and in the bands of other paths, not of its own
 "$grainlaw" predict out/parameters.json path.json -o alone >text0
-grep -q "the law's own error is not in them" text0 || fail "silent about the law's own error: $(cat text0)"
+tr -s '\n ' ' ' <text0 | grep -q "the law's own error is not in them" || fail "silent about the law's own error: $(cat text0)"
 jq -e '.rung.recommended == .rung.needed and (.rung.rehearsed | not) and .rehearsals == null' alone/prediction.json >/dev/null || fail "advice without rehearsals"
 cp -r out rehearsed
 "$grainlaw" predict rehearsed/parameters.json path.json -o rehearsed/uni --against out/predictions/uni --rehearse >/dev/null 2>log || fail "--rehearse: $(cat log)"
@@ -99,6 +108,7 @@ diff <(jq .rehearsals rehearsed/parameters.json) <(jq .rehearsals refitted/param
 "$grainlaw" predict refitted/parameters.json other.json -o refitted/predictions/other --dem --seeds 3 --spec out/spec.resolved.json --store out --rehearse >/dev/null 2>log ||
   fail "--dem --rehearse: $(cat log)"
 "$grainlaw" study bands refitted -o bands >text || fail "study bands"
+(( $(LC_ALL=C.UTF-8 wc -L <text) <= 80 )) || fail "study bands is wider than 80 columns: $(cat text)"
 jq -e '(.summaries | length) >= 6 and .summaries[0].paths == 2' bands/study.json >/dev/null || fail "study bands: $(cat text)"
 code=0
 "$grainlaw" predict out/parameters.json path.json -o bad --rehearse 2>err || code=$?
@@ -106,5 +116,9 @@ code=0
 
 "$grainlaw" report out -o report.html >table.txt
 [[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report
+grep -q 'class="verdict' report.html && grep -q 'Distrust first' report.html || fail "what a reader sees first"
+"$grainlaw" report refit -o refit.html --compare out >/dev/null
+grep -q 'No path that the fit never saw has been predicted' refit.html && grep -q 'grainlaw predict refit/parameters.json' refit.html || fail "a page without predictions"
+grep -q 'id="comparison"' refit.html || fail "report --compare"
 find . -name '.*tmp*' | grep -q . && fail "temporary files left"
 exit 0

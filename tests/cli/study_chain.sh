@@ -34,6 +34,7 @@ grep -q 'base' chain/settings.svg || fail 'the figure lacks the base'
 mv chain/study.json two.json
 # again from the store, without a reference of its own
 "$grainlaw" study chain spec.json --for path.json --vary 'seeds=[1,2,3]' -o chain --quiet >text || fail 'again'
+(( $(LC_ALL=C.UTF-8 wc -L <text) <= 80 )) || fail "wider than 80 columns: $(cat text)"
 grep -Eq '^base is (not )?dominated' text || fail "$(cat text)"
 jq -e '.reference == "base" and .settings[0].error == 0 and .settings[0].reached == .settings[0].sampling
   and .settings[1].packings == 3' chain/study.json >/dev/null || fail 'base as reference'

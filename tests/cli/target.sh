@@ -18,7 +18,7 @@ jq -e '.rounds[-1] | .error as $e | .quantities[0] | .quantity == "P_star" and .
   ((.half_width * .half_width + .bias_strain_rate * .bias_strain_rate + .bias_time_step * .bias_time_step + .bias_size * .bias_size
     | sqrt) / $e - 1 | fabs) < 1e-9' loose/plan.json >/dev/null || fail "errors do not add up: $(cat loose/plan.json)"
 [[ -s loose/parameters.json ]] && grep -q 'wanted 50.00 %: met' text || fail "$(cat text)"
-grep -q 'sheared at 0.71, 0.737, 0.763, 0.79: ' text || fail "densities: $(cat text)"
+grep -q '^sheared   at 0.71, 0.737, 0.763, 0.79: ' text || fail "densities: $(cat text)"
 # the frame stays, what the plan chose is listed; the seeds follow the frame's
 jq -e '.overrides | keys == ["densities", "particles", "seeds", "tests"]' loose/plan.json >/dev/null || fail "$(jq -c .overrides loose/plan.json)"
 jq -e '.seeds == [5, 1, 6, 7] and .densities[0] == 0.71 and .strain_rate == 3000' loose/spec.resolved.json >/dev/null || fail spec

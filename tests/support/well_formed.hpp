@@ -2,6 +2,7 @@
 // A small check that markup is well-formed XML: elements nest, attributes are quoted, only the five named entities and
 // numeric ones, no raw '<' or '&' in text. Enough for pages that the project writes itself; no validator.
 
+#include <algorithm>
 #include <cctype>
 #include <string>
 #include <string_view>
@@ -72,6 +73,7 @@ inline std::string first_markup_error(std::string_view markup) {
       open.pop_back();
     } else if (!empty_element) {
       open.push_back(name);
+      if (name == "script") i = std::min(markup.find("</script>", i), markup.size());  // is no markup
     }
   }
   return open.empty() ? "" : "<" + open.back() + "> is never closed";

@@ -80,9 +80,11 @@ TEST(FormatsDocument, ListsTheColumnsOfProbes) {
 }
 
 std::string range(const Json& s) {
-  std::string text = s.contains("type") && s["type"].is_string() ? s["type"].get<std::string>()
-                     : s.contains("anyOf")                       ? "number, array or text"
-                                                                 : "";
+  std::string text = s.contains("type") && s["type"].is_string() ? s["type"].get<std::string>() : "";
+  for (const Json& kind : s.value("anyOf", Json::array())) {
+    const std::string type = kind["type"];
+    text += fmt::format("{}{}", text.empty() ? "" : " or ", type == "string" ? "text" : type);
+  }
   const auto add = [&](const char* key, const char* sign) {
     if (s.contains(key)) text += fmt::format(" {} {:g}", sign, s[key].get<double>());
   };
@@ -207,7 +209,7 @@ TEST(FormatsDocument, NamesEveryFileOfASchema) {
   const std::string text = read_all(kDocument);
   for (const char* file :
        {"spec.schema.json", "path.schema.json", "test.schema.json", "dataset.schema.json", "parameters.schema.json",
-        "study.schema.json", "study_settings.schema.json", "plan.schema.json"}) {
+        "study.schema.json", "study_settings.schema.json", "plan.schema.json", "prior.schema.json"}) {
     EXPECT_NE(text.find(file), std::string::npos) << file;
     EXPECT_TRUE(std::filesystem::exists(kDocument.parent_path() / "schemas" / file));
   }

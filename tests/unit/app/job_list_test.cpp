@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <mutex>
+#include <regex>
 #include <thread>
 
 #include "model/vocabulary/error.hpp"
@@ -127,6 +128,24 @@ TEST(ProgressPrinter, WritesPlainLinesToAFile) {
   all.resize(std::fread(all.data(), 1, all.size(), out));
   std::fclose(out);
   EXPECT_EQ(all, "grainlaw: two\\x0alines\n");  // no bar, no escape sequences, nothing within the first seconds
+}
+
+// Without a unit the parts count by their shares: a fifth in 5 s leaves 20 s.
+TEST(ProgressPrinter, TellsShareStageAndTimeLeftOfAFit) {
+  std::FILE* out = std::tmpfile();
+  ProgressPrinter printer(out, false);
+  printer.begin({4, 0, 1}, "");
+  const RunControl control = printer.control(0, "fit", {});
+  std::this_thread::sleep_for(5100ms);  // a line every five seconds
+  control.report({"evolution", 0.25, 3, "iterations"});
+  printer.finished(0);
+  printer.control(2, "other modes", {});
+  printer.end();
+  std::rewind(out);
+  std::string all(1000, '\0');
+  all.resize(std::fread(all.data(), 1, all.size(), out));
+  std::fclose(out);
+  EXPECT_TRUE(std::regex_match(all, std::regex("grainlaw:  20 %, 0:2[0-9] left \\(fit, evolution\\)\n"))) << all;
 }
 
 TEST(ProgressPrinter, QuietSaysNothing) {

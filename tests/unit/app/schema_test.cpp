@@ -79,6 +79,47 @@ TEST(SchemaCheck, CostGrowsWithTheLengthOfADocumentNotItsSquare) {
   EXPECT_NE(schema_refusal(text + "0.7]}").find("densities"), std::string::npos);
 }
 
+TEST(SchemaCheck, TellsAllViolationsWhereAsked) {
+  const auto violations = [](const char* text) {
+    return schema_violations(parse_json(text, "s.json", JsonSource::user), Schema::spec, "s.json");
+  };
+  EXPECT_TRUE(violations("{}").empty());
+  const std::vector<std::string> all = violations(
+      R"({"particle": 1, "seed": 2, "nu_max": 2, "tests": [{"mode": "D4", "rol": 1}, {"role": "calibration"}]})");
+  for (const char* wanted : {"s.json: unknown key 'particle'; did you mean 'particles'?",
+                             "s.json: unknown key 'seed'; did you mean 'seeds'?",
+                             "s.json: tests[0]: unknown key 'rol'; did you mean 'role'?"})
+    EXPECT_EQ(std::count(all.begin(), all.end(), wanted), 1) << wanted;
+  const auto begins = [&](const char* start) {
+    return std::count_if(all.begin(), all.end(), [&](const std::string& text) { return text.starts_with(start); });
+  };
+  for (const char* start : {"s.json: tests[0].mode: got \"D4\"", "s.json: tests[0]: misses the key 'role'",
+                            "s.json: nu_max: got 2; give a number"})
+    EXPECT_EQ(begins(start), 1) << start;
+  EXPECT_EQ(all.size(), 6u);  // and nothing of the objects around them
+}
+
+TEST(SchemaCheck, LetsEveryInputNameItsSchemaAndTakesItsExamples) {
+  for (const auto& [which, name] : {std::pair{Schema::spec, "spec"},
+                                    {Schema::path, "path"},
+                                    {Schema::test, "test"},
+                                    {Schema::dataset, "dataset"},
+                                    {Schema::parameters, "parameters"},
+                                    {Schema::prior, "prior"},
+                                    {Schema::plan, "plan"}}) {
+    const Json& s = schema(which);
+    EXPECT_TRUE(s["properties"].contains("$schema") && s["properties"]["$schema"]["type"] == "string") << name;
+    EXPECT_TRUE(s.contains("title") && s.contains("description") && s.value("allowComments", false)) << name;
+    for (Json example : s.value("examples", Json::array())) {
+      example["$schema"] = "file:///usr/share/grainlaw/schemas/" + std::string(name) + ".schema.json";
+      example["comment"] = Json({"one line", "another"});
+      EXPECT_EQ(schema_violations(example, which, name), std::vector<std::string>{}) << example.dump();
+    }
+  }
+  for (const Schema which : {Schema::spec, Schema::path, Schema::test, Schema::dataset})
+    EXPECT_GT(schema(which).value("examples", Json::array()).size(), 0u);
+}
+
 /// Every key that a user may write says what to give.
 void expect_described(const Json& node, const std::string& place) {
   if (!node.is_object()) return;
@@ -92,7 +133,8 @@ void expect_described(const Json& node, const std::string& place) {
 }
 
 TEST(SchemaCheck, DescribesEveryKey) {
-  for (const Schema which : {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::parameters})
+  for (const Schema which :
+       {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::parameters, Schema::prior})
     expect_described(schema(which), "");
 }
 

@@ -82,7 +82,7 @@ TEST(StudyFiles, TheFigureStarsTheDefaultAndGreysWhatIsDominated) {
   ASSERT_EQ(shade.bands.size(), 1u);
   for (std::size_t i = 0; i < shade.x.size(); ++i)
     EXPECT_NEAR(shade.y[i] + shade.bands[0][i], student_95(2) * 0.005 * std::sqrt(3.0), 1e-12);
-  EXPECT_NE(render_svg(figure_of(study(1.1))).svg.find("class=\"band\""), std::string::npos);
+  EXPECT_NE(figure_svg(figure_of(study(1.1))).find("class=\"b\""), std::string::npos);
 }
 
 TEST(StudyFiles, NoTwoSettingsOfTheFigureLookAlike) {

@@ -163,8 +163,12 @@ TEST(Calibrate, CanBeStopped) {
   RunControl control;
   control.stop = source.get_token();
   std::set<std::string> stages;
+  double so_far = 0;
   control.report = [&](const Progress& progress) {
     stages.insert(progress.stage);
+    EXPECT_GE(progress.fraction, so_far);  // of the whole fit, never back
+    EXPECT_LT(progress.fraction, 1);
+    so_far = progress.fraction;
     if (progress.stage == "evolution") source.request_stop();
   };
   EXPECT_THROW(calibrate(tests, {}, control), Interrupted);

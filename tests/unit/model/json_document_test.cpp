@@ -39,10 +39,16 @@ TEST(JsonDocument, RefusesHostileTextWithPlaceAndReason) {
   EXPECT_NE(json_refusal("{\"a\": \"\xff\"}").find("UTF-8"), std::string::npos);
   EXPECT_NE(json_refusal(std::string("{}\0", 3)).find("x.json: "), std::string::npos);
   for (const char* broken :
-       {"", "{", "[1,]", "{\"a\":}", "{} {}", "// c\n{}", "'a'", "01", "+1", ".5", "Infinity", "{\"a\" 1}"}) {
+       {"", "{", "[1,]", "{\"a\":}", "{} {}", "# c\n{}", "/* {}", "'a'", "01", "+1", ".5", "Infinity", "{\"a\" 1}"}) {
     EXPECT_NE(json_refusal(broken), "accepted") << broken;
     EXPECT_EQ(json_refusal(broken).find('\n'), std::string::npos) << broken;
   }
+}
+
+TEST(JsonDocument, SkipsCommentsOfUsersAlone) {
+  const std::string text = "// of the file\n{\"a\": /* inside */ [1, 2], // of a line\n \"b\": \"http://x\"}\n// end";
+  EXPECT_EQ(parse_json(text, "x.json", JsonSource::user), Json({{"a", {1, 2}}, {"b", "http://x"}}));
+  EXPECT_THROW(parse_json(text, "x.json", JsonSource::own), InvalidInput);
 }
 
 TEST(JsonDocument, LimitsNestingWhileParsing) {

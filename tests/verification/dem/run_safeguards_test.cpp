@@ -233,7 +233,8 @@ double inertial_number(const Observation& row, const State& start, const Straigh
 TEST(RunSafeguards, D25InertialNumber) {
   double error = 0;
   int wrong_warnings = 0, warned = 0, silent = 0, runs = 0;
-  for (const double nu : {0.67, 0.72, 0.80}) {
+  std::size_t unjammed = 0;
+  for (const double nu : {0.64, 0.67, 0.72, 0.80}) {
     const State start = scene::jammed({"Paper", 3, 0}, 100, nu, 3);
     for (const Mode mode : {Mode::ISO, Mode::UNI, Mode::D2, Mode::D3}) {
       for (const double rate : {100.0, 2000.0}) {
@@ -251,7 +252,13 @@ TEST(RunSafeguards, D25InertialNumber) {
           const double difference = std::abs(test.rows[k].inertial_number - I[k]) / largest;
           if (!(difference <= error)) error = difference;
         }
-        const std::size_t beyond = count_beyond(I, 1e-3);
+        // below 6 contacts per sphere nothing is rigid, and nothing is said; such rows are of the loosest packings only
+        std::vector<double> jammed;
+        for (std::size_t k = 0; k < I.size(); ++k) {
+          if (test.rows[k].C_star >= 6) jammed.push_back(I[k]);
+        }
+        unjammed += count_beyond(I, 1e-3) - count_beyond(jammed, 1e-3);
+        const std::size_t beyond = count_beyond(jammed, 1e-3);
         wrong_warnings += rows_warned_of(test, "inertial number above 0.001") != beyond ? 1 : 0;
         (beyond > 0 ? warned : silent) += 1;
         ++runs;
@@ -260,6 +267,7 @@ TEST(RunSafeguards, D25InertialNumber) {
   }
   EXPECT_GT(warned, 2);
   EXPECT_GT(silent, 2);
+  EXPECT_GT(unjammed, 2U) << "the loosest packings move fast where nothing is jammed";
   expect_figure("D25.error", error, 1e-12);
   expect_figure("D25.wrong_warnings_of_" + std::to_string(runs), wrong_warnings, 0);
 }

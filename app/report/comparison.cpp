@@ -1,0 +1,92 @@
+// Two calibrations side by side.
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/first_screen.hpp"
+#include "app/report/tables.hpp"
+#include "model/files/path_json.hpp"
+
+namespace grainlaw::app::report {
+namespace {
+
+using enum Content;
+using chain::PathError;
+
+struct Pair {
+  const ParameterInfo& info;
+  const Estimate &ours, &other;
+
+  bool known() const { return ours.status != Status::not_identified && other.status != Status::not_identified; }
+  /// In units of the difference's standard error; NaN where neither has one.
+  double distance() const {
+    const auto square = [](double error) { return std::isfinite(error) ? error * error : 0; };
+    const double error = std::sqrt(square(ours.standard_error) + square(other.standard_error));
+    return known() && error > 0 ? (ours.value - other.value) / error : kUndefined;
+  }
+};
+
+Cell value_or_word(const Estimate& estimate) {
+  return estimate.status == Status::not_identified ? Cell("not identified")
+                                                   : measured(estimate.value, estimate.standard_error);
+}
+
+struct OnPath {
+  const PathError &ours, &other;
+};
+
+}  // namespace
+
+Table parameter_pairs(const CalibratedLaw& ours, const CalibratedLaw& other) {
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const Pair pair{parameter_table()[i], ours.estimates[i], other.estimates[i]};
+    if (pair.ours.status != Status::not_identified || pair.other.status != Status::not_identified)
+      pairs.push_back(pair);
+  }
+  const auto beyond = std::ranges::count_if(pairs, [](const Pair& pair) { return std::abs(pair.distance()) > 2; });
+  return table_of(std::to_string(beyond) + " of " + std::to_string(pairs.size()) +
+                      " parameters differ by more than twice the standard error of the difference. Errors count as "
+                      "independent, which those of shared packings are not",
+                  "parameters.json of both", pairs,
+                  {{"parameter", words, [](auto& pair) { return pair.info.name; }},
+                   {"this", number, [](auto& pair) { return value_or_word(pair.ours); }},
+                   {"other", number, [](auto& pair) { return value_or_word(pair.other); }},
+                   {"difference [errors]", number, [](auto& pair) { return decimals(pair.distance(), 1); }},
+                   {"difference", number, [](auto& pair) {
+                      return Cell(pair.known() ? percent_difference(pair.ours.value, pair.other.value) : kNoNumber,
+                                  pair.known() ? pair.ours.value - pair.other.value : kUndefined);
+                    }}});
+}
+
+Table error_pairs(const std::vector<PathError>& ours, const std::vector<PathError>& other) {
+  std::vector<OnPath> common;
+  for (const PathError& mine : ours) {
+    if (!mine.recommended) continue;
+    const auto theirs = std::ranges::find_if(other, [&](const PathError& entry) {
+      return entry.recommended && Json(path_to_json(*entry.along)) == Json(path_to_json(*mine.along));
+    });
+    if (theirs != other.end()) common.push_back({mine, *theirs});
+  }
+  const auto column = [](std::size_t q, bool mine) {
+    return [=](const OnPath& path) {
+      const double error = (mine ? path.ours : path.other).error[q];
+      Cell shade(fixed(100 * error, 1), 100 * error);
+      shade.heat = heat_of(error);
+      return shade;
+    };
+  };
+  return table_of("Errors on the paths that both have, each by the rung that it recommends [%]: this, other",
+                  "comparison.json, parameters.json of both", common,
+                  {{"path", words, [](auto& path) { return path.ours.path; }},
+                   {"rung", words, [](auto& path) { return to_string(path.ours.rung); }},
+                   {"other's", words, [](auto& path) { return to_string(path.other.rung); }},
+                   {"{P}*", number, column(0, true)},
+                   {"other", number, column(0, false)},
+                   {"{s}", number, column(1, true)},
+                   {"other", number, column(1, false)},
+                   {"{F}", number, column(2, true)},
+                   {"other", number, column(2, false)}});
+}
+
+}  // namespace grainlaw::app::report

@@ -1,0 +1,25 @@
+#pragma once
+// A figure in the page: legend and toggles that need no script, panels, caption, sources, and its numbers for the script.
+
+#include <string>
+#include <vector>
+
+#include "app/report/figure.hpp"
+
+namespace grainlaw::app::report {
+
+std::string figure_html(const Figure& figure);
+std::string drawing_html(const Drawing& drawing);
+
+/// The base-64 character of six bits.
+char base64_character(unsigned six_bits);
+
+/// `values` for a script, as JSON: [lowest, highest, characters], three characters of base 64 for each value, 0 at the lowest
+/// and 262142 at the highest, 262143 where it is undefined; with `logarithmic` of the natural logarithms, and undefined where
+/// not positive. So the page keeps five digits of an axis in three characters.
+std::string packed_numbers(const std::vector<double>& values, bool logarithmic);
+
+/// Rules of style that hide what one of `count` toggles of a figure stands for.
+std::string toggle_style(std::size_t count);
+
+}  // namespace grainlaw::app::report

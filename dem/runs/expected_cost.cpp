@@ -1,0 +1,137 @@
+#include "dem/runs/expected_cost.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "dem/runs/feasibility.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Measured on finished runs of 800 to 9261 spheres:
+constexpr double kPassesPerRelaxation = 1500;  // force passes of the relaxation of one kept state, within a factor of 2
+constexpr double kBytesPerRow = 880;           // of a series
+constexpr double kBytesPerKept = 72;           // of a sphere in a kept state
+constexpr double kBytesPerEnd = 120;           // of a sphere in the state at the end of a test
+constexpr double kBytesPerTableRow = 140;      // of a sphere in end.csv
+constexpr double kBytesPerRecord = 2500;       // of run.json
+
+constexpr double kMeasured = 0.4;  // wall time of a measurement [s]
+constexpr std::int64_t kMeasuredSpheres = 10000;
+constexpr double kMeasuredDensity = 0.72;
+
+double spheres(const PreparationOptions& o) { return static_cast<double>(o.packing.particles); }
+double kept(const PreparationOptions& o) {
+  return static_cast<double>(o.keep_loading.size() + o.keep_unloading.size());
+}
+
+void add_preparation(const PreparationOptions& o, const fs::path& runs, ExpectedCost& cost) {
+  ++cost.runs;
+  cost.bytes += kBytesPerRecord + 2 * o.rows * kBytesPerRow + kept(o) * spheres(o) * kBytesPerKept;
+  if (is_finished(runs, preparation_key(o)))
+    ++cost.found;
+  else
+    cost.particle_steps += expected_work(o) + (kept(o) + 1) * spheres(o) * kPassesPerRelaxation;
+}
+
+void add_test(const PlannedTest& test, const fs::path& runs, ExpectedCost& cost) {
+  ++cost.runs;
+  const double N = test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
+  const double rows = static_cast<double>(test.path.segments.size()) * test.rows + 1;
+  cost.bytes += kBytesPerRecord + rows * kBytesPerRow + N * kBytesPerEnd;
+  if (is_finished(runs, test_key(test)))
+    ++cost.found;
+  else
+    cost.particle_steps += expected_work(test) + (test.relax ? N * kPassesPerRelaxation : 0);
+}
+
+/// A packing that is dense at once: the gas, shrunk and relaxed roughly.
+State dense_packing(const PreparationOptions& like, const EngineOptions& engine, const RunControl& control) {
+  PackingOptions packing = like.packing;
+  packing.particles = std::min(packing.particles, kMeasuredSpheres);
+  State state = random_gas(packing, like.nu_gas, engine, control);
+  scale_to_volume_fraction(state.packing, kMeasuredDensity);
+  relax(state, engine, {1e-2, 400}, control);
+  return state;
+}
+
+/// Steps per second of one run, times its spheres.
+double rate_of_one(const State& state, const PreparationOptions& like, const EngineOptions& engine,
+                   const std::stop_token& stop) {
+  using Clock = std::chrono::steady_clock;
+  std::stop_source enough;
+  const std::stop_callback forward(stop, [&] { enough.request_stop(); });
+  ElementTestOptions options;
+  options.engine = engine;
+  options.drive = like.drive;
+  options.drive.quasi_static_step = 0;
+  const std::vector<StraightSegment> shear =
+      resolve({kMeasuredDensity, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 1}}});
+  double steps = 0, seconds = 0;
+  Clock::time_point first;
+  const auto count = [&](Simulation&, int, double) {
+    if (steps == 0) first = Clock::now();
+    ++steps;
+    seconds = std::chrono::duration<double>(Clock::now() - first).count();
+    if (seconds > kMeasured) enough.request_stop();
+  };
+  try {
+    run_element_test(state, shear, options, {{}, enough.get_token()}, count);
+  } catch (const Interrupted&) {
+    if (stop.stop_requested()) throw;
+  }
+  return static_cast<double>(state.packing.size()) * std::max(1.0, steps - 1) / seconds;
+}
+
+}  // namespace
+
+ExpectedCost expected_cost(const std::vector<PlannedTest>& tests, const fs::path& parent) {
+  ExpectedCost cost;
+  std::set<std::string> seen;
+  for (const PlannedTest& test : tests) {
+    if (!test.given && seen.insert(preparation_key(test.preparation)).second)
+      add_preparation(test.preparation, parent / "runs", cost);
+    if (!test.branch_of_preparation && seen.insert(test_key(test)).second) add_test(test, parent / "runs", cost);
+    const std::size_t segments = std::max<std::size_t>(1, test.path.segments.size());
+    cost.bytes += static_cast<double>(segments) * test.rows * kBytesPerRow;  // the copy of the series
+  }
+  return cost;
+}
+
+ExpectedCost expected_cost(const TestFile& test, const fs::path& output) {
+  const bool prepared = test.start == Start::preparation;
+  ExpectedCost cost = expected_cost({{test, "", Role::validation, prepared}}, output);
+  const double N = test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
+  cost.bytes += prepared ? kept(test.preparation) * N * kBytesPerKept + 2 * test.rows * kBytesPerRow
+                         : N * (kBytesPerEnd + kBytesPerTableRow);
+  return cost;
+}
+
+double measured_rate(const PreparationOptions& like, int threads, const std::stop_token& stop) {
+  EngineOptions engine = like.engine;
+  engine.threads = 1;
+  const State state = dense_packing(like, engine, {{}, stop});
+  std::vector<double> rates(static_cast<std::size_t>(threads));
+  {
+    std::vector<std::jthread> together;
+    for (double& rate : rates)
+      together.emplace_back([&] {
+        try {
+          rate = rate_of_one(state, like, engine, stop);
+        } catch (const Error&) {
+          rate = 0;  // another thread's rate serves, or none is known
+        }
+      });
+  }
+  if (stop.stop_requested()) throw Interrupted("interrupted; nothing was run");
+  double sum = 0;
+  for (const double rate : rates) sum += rate;
+  return sum;
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,128 @@
+#include "dem/runs/pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dem/files/state_file.hpp"
+#include "dem/runs/preparation_folder.hpp"
+#include "model/files/json_document.hpp"
+#include "model/files/output.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAxes[] = {"x", "y", "z"};
+
+/// D2 alone, at the middle one of the densities at which the first packing shears so for the calibration.
+const PlannedTest* shown_test(const std::vector<PlannedTest>& tests) {
+  std::vector<const PlannedTest*> sheared;
+  for (const PlannedTest& test : tests) {
+    const auto& segments = test.path.segments;
+    if (test.preparation.packing.seed == tests.front().preparation.packing.seed && test.role == Role::calibration &&
+        segments.size() == 1 && segments.front().mode == Mode::D2)
+      sheared.push_back(&test);
+  }
+  if (sheared.empty()) return nullptr;
+  const auto middle = sheared.begin() + static_cast<std::ptrdiff_t>(sheared.size() / 2);
+  std::nth_element(sheared.begin(), middle, sheared.end(),
+                   [](const PlannedTest* a, const PlannedTest* b) { return a->path.nu < b->path.nu; });
+  return *middle;
+}
+
+/// Rows with three decimals: a thousandth of a radius is a tenth of a pixel.
+template <class Rows>
+OrderedJson rounded(const Rows& rows) {
+  OrderedJson all = OrderedJson::array();
+  for (const auto& row : rows) {
+    OrderedJson one = OrderedJson::array();
+    for (const double value : row) one.push_back(std::round(1e3 * value) / 1e3);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+OrderedJson to_json(const PackingPicture& picture) {
+  return {{"width", picture.width},
+          {"height", picture.height},
+          {"circles", rounded(picture.circles)},
+          {"chains", rounded(picture.chains)},
+          {"count", picture.count},
+          {"force", picture.force}};
+}
+
+PackingPicture from_json(const Json& json) {
+  PackingPicture picture;
+  json.at("width").get_to(picture.width);
+  json.at("height").get_to(picture.height);
+  json.at("circles").get_to(picture.circles);
+  json.at("chains").get_to(picture.chains);
+  json.at("count").get_to(picture.count);
+  json.at("force").get_to(picture.force);
+  return picture;
+}
+
+}  // namespace
+
+void write_pictures(const fs::path& folder, const std::vector<PlannedTest>& tests, const RunStore& store, int threads) {
+  const PlannedTest* const test = shown_test(tests);
+  const fs::path before =
+      test ? store.folder(preparation_key(test->preparation)) / kept_file(test->path.branch, test->path.nu)
+           : fs::path();
+  const fs::path after = test ? store.folder(test_key(*test)) / "end.state" : fs::path();
+  if (!test || !fs::exists(before) || !fs::exists(after)) {
+    fs::remove(folder / kPicturesFile);
+    return;
+  }
+  const PathSegment& shear = test->path.segments.front();
+  Eigen::Index horizontal = 0, vertical = 0;
+  shear.direction.tensor.diagonal().maxCoeff(&horizontal);
+  shear.direction.tensor.diagonal().minCoeff(&vertical);
+  const auto drawn = [&](const fs::path& file) {
+    return to_json(picture_of(read_state(file), static_cast<int>(horizontal), static_cast<int>(vertical), threads));
+  };
+  write_json(folder / kPicturesFile, {{"format", "grainlaw pictures"},
+                                      {"test", test->name},
+                                      {"nu", test->path.nu},
+                                      {"strain", shear.extent},
+                                      {"particles", test->preparation.packing.particles},
+                                      {"horizontal", kAxes[horizontal]},
+                                      {"vertical", kAxes[vertical]},
+                                      {"before", drawn(before)},
+                                      {"after", drawn(after)}});
+}
+
+void adopt_pictures(const fs::path& from, const fs::path& to) {
+  std::error_code absent;
+  if (fs::equivalent(from, to, absent)) return;
+  fs::remove(to / kPicturesFile);
+  if (fs::exists(from / kPicturesFile)) copy_durably(from / kPicturesFile, to / kPicturesFile);
+}
+
+std::optional<ShearPictures> read_pictures(const fs::path& folder) {
+  const fs::path file = folder / kPicturesFile;
+  if (!fs::exists(file)) return std::nullopt;
+  const Json json = read_json(file, JsonSource::own);
+  try {
+    ShearPictures pictures;
+    json.at("test").get_to(pictures.test);
+    json.at("nu").get_to(pictures.nu);
+    json.at("strain").get_to(pictures.strain);
+    json.at("particles").get_to(pictures.particles);
+    json.at("horizontal").get_to(pictures.horizontal);
+    json.at("vertical").get_to(pictures.vertical);
+    pictures.note = json.value("note", "");
+    pictures.before = from_json(json.at("before"));
+    pictures.after = from_json(json.at("after"));
+    return pictures;
+  } catch (const Json::exception& error) {
+    throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+}  // namespace grainlaw::dem

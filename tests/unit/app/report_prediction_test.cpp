@@ -1,0 +1,113 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/figures.hpp"
+#include "tests/support/report_scene.hpp"
+
+namespace grainlaw::app::report {
+namespace {
+
+/// The first prediction of the scene with a band of half the measured value, evolution recommended.
+struct Scene {
+  chain::ReportInput input = test::report_scene();
+  predict::PredictionFolder& prediction = input.predictions.front();
+
+  Scene() {
+    prediction.recommended.rung = Rung::evolution;
+    for (predict::PredictedCurve& drawn : prediction.curves) {
+      for (predict::PredictedRow& row : drawn.prediction.rows) {
+        row.single = {0.02, 0.02, 0.02, 0.02, 0.02};
+        row.mean = {0.01, 0.01, 0.01, 0.01, 0.01};
+      }
+    }
+  }
+  Figure figure() const { return prediction_figure(prediction, input.calibration.law, 0); }
+};
+
+const Series& labelled(const Panel& panel, const std::string& words) {
+  const auto found = std::find_if(panel.series.begin(), panel.series.end(), [&](const Series& series) {
+    return to_plain(series.label).find(words) != std::string::npos;
+  });
+  EXPECT_NE(found, panel.series.end()) << words;
+  return found == panel.series.end() ? panel.series.front() : *found;
+}
+
+TEST(ReportPrediction, OneRungStandsOutAndTheOthersWaitForTheirToggle) {
+  const Scene scene;
+  const Figure figure = scene.figure();
+  ASSERT_EQ(figure.panels.size(), 6U);
+  for (std::size_t q = 0; q < 3; ++q) {
+    const Panel& panel = figure.panels[q];
+    const Series &first = labelled(panel, "evolution, recommended"), &other = labelled(panel, "reduced");
+    EXPECT_TRUE(first.toggle.empty());
+    EXPECT_FALSE(first.initially_hidden);
+    EXPECT_EQ(first.bands.size(), 2U);
+    EXPECT_EQ(other.toggle, "reduced");
+    EXPECT_TRUE(other.initially_hidden);
+    EXPECT_TRUE(other.bands.empty());
+    for (const Series& series : panel.series) {
+      const bool is_run = to_plain(series.label).starts_with("DEM");
+      EXPECT_TRUE(!is_run || series.colour == Colour::grey);
+    }
+  }
+}
+
+TEST(ReportPrediction, PressureIsARatioWhereTheLawHasOneAllAlong) {
+  Scene scene;
+  const Figure ratio = scene.figure();
+  const Series& law = labelled(ratio.panels[0], "evolution, recommended");
+  for (std::size_t i = 0; i < law.y.size(); ++i) {
+    EXPECT_NEAR(law.y[i], 0.95, 1e-12) << "what the scene's evolution is of Eq. 14";
+    EXPECT_NEAR(law.bands[1][i], 2 * law.bands[0][i], 1e-12);
+  }
+  EXPECT_NE(to_plain(ratio.panels[0].y.label).find("ISO"), std::string::npos);
+  scene.prediction.curves[1].prediction.rows[5].nu = 0.6;  // below jamming it is none
+  const Panel absolute = scene.figure().panels[0];
+  EXPECT_EQ(to_plain(absolute.y.label).find("ISO"), std::string::npos);
+  EXPECT_LT(labelled(absolute, "evolution, recommended").y.front(), 0.1);
+}
+
+TEST(ReportPrediction, ResidualsCountInBandsOfASingleRun) {
+  Scene scene;
+  const TestRecord& run = scene.prediction.dem->tests.front().record;
+  const auto curve_of = [&](const predict::PredictedCurve& drawn) {
+    return drawn.model == Rung::evolution && drawn.seed == run.packing.seed;
+  };
+  const auto& rows = std::ranges::find_if(scene.prediction.curves, curve_of)->prediction.rows;
+  const Series residual = labelled(scene.figure().panels[4], "evolution, recommended");
+  ASSERT_EQ(residual.y.size(), run.rows.size());
+  for (std::size_t i = 0; i < residual.y.size(); ++i)
+    EXPECT_NEAR(residual.y[i], (run.rows[i].s_par - rows[i].s_par) / 0.02, 1e-12);
+  EXPECT_EQ(scene.figure().panels[4].series.front().bands, (std::vector<std::vector<double>>{{1, 1}}));
+  for (predict::PredictedCurve& drawn : scene.prediction.curves) {
+    for (predict::PredictedRow& row : drawn.prediction.rows) row.single = {};
+  }
+  const Series difference = labelled(scene.figure().panels[4], "evolution, recommended");
+  EXPECT_NEAR(difference.y[7], run.rows[7].s_par - rows[7].s_par, 1e-12) << "without a band in its own unit";
+}
+
+TEST(ReportShear, TheRecommendedRungIsDrawnOverTheTestsOfItsPath) {
+  chain::ReportInput input = test::report_scene();
+  const TestRecord& shear = *std::find_if(input.tests.begin(), input.tests.end(), is_pure_shear);
+  const double P = input.calibration.law.parameters.isotropic.P_star(shear.path.nu);
+  chain::FittedPath fitted{shear.path,
+                           {{Rung::reduced, {0, 0.1}, {P, P}, {0, 0.2}, {0, 0.1}},
+                            {Rung::memory, {0, 0.1}, {P, 2 * P}, {0, 0.3}, {0, 0.15}}}};
+  fitted.recommended = Rung::memory;
+  input.fitted_paths = {fitted};
+  const Panel stress = stress_ratio_figure(input).panels.front(),
+              pressure = sheared_pressure_figure(input).panels.front();
+  EXPECT_EQ(labelled(stress, "memory, recommended").y, (std::vector<double>{0, 0.3}));
+  EXPECT_TRUE(labelled(stress, "memory, recommended").toggle.empty());
+  EXPECT_TRUE(labelled(stress, "reduced").initially_hidden);
+  EXPECT_NEAR(labelled(pressure, "memory, recommended").y[1], 2, 1e-12);
+  EXPECT_EQ(labelled(fabric_figure(input).panels.front(), "memory, recommended").y[1], 0.15);
+  input.fitted_paths.clear();
+  input.calibrate_command = "grainlaw calibrate --dataset D -o D";
+  EXPECT_NE(to_plain(stress_ratio_figure(input).caption).find(input.calibrate_command), std::string::npos);
+}
+
+}  // namespace
+}  // namespace grainlaw::app::report
