@@ -35,7 +35,10 @@ TEST_P(ExactData, EveryStageTogetherFindsTheTruth) {
   calibration.coupling = GetParam();
   calibration.max_step = 1.2e-3;
   const fit::Calibration c = fit::calibrate(testing::synthetic_dataset(truth, options), calibration, {});
-  EXPECT_TRUE(c.law.converged);
+  // The memory rung is of another law than the one that made the data; memory_fit_test.cpp has its own.
+  for (const fit::Stage& stage : c.stages) {
+    if (stage.name != "memory") EXPECT_TRUE(stage.converged) << stage.name << ": " << stage.termination;
+  }
   const auto value = fields(c.law.parameters);
   const auto expected = fields(truth);
   double worst = 0;
@@ -45,8 +48,7 @@ TEST_P(ExactData, EveryStageTogetherFindsTheTruth) {
     if (status == Status::not_identified || status == Status::tied) continue;
     // In shear of exact Eq. (16) data P stays near the isotropic level: there is no steady pressure of its own to find.
     if (name.rfind("steady_pressure", 0) == 0) continue;
-    if (name.rfind("memory", 0) == 0)
-      continue;  // of another law than the one that made the data; memory_fit_test.cpp has its own
+    if (name.rfind("memory", 0) == 0) continue;
     const double scale = *expected[i] != 0 ? std::abs(*expected[i]) : std::abs(*expected[i + 1]);
     worst = std::max(worst, std::abs(*value[i] - *expected[i]) / scale);
   }
