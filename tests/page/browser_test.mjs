@@ -55,8 +55,12 @@ test('every figure is drawn, the same without the script', async () => {
   assert.ok(with_script.length >= 10, String(with_script.length));
   assert.deepEqual(with_script, without);
   for (const panel of without) {
-    assert.ok(panel.inked > 0 || panel.series === 0, panel.figure + ' shows nothing');
-    assert.ok(panel.numbers.length >= 4, panel.figure + ': ' + panel.numbers);
+    if (panel.figure === 'packing') {  // pictures without axes
+      assert.ok(panel.paths.join('').length > 100, 'a picture of the packing shows nothing');
+    } else {
+      assert.ok(panel.inked > 0 || panel.series === 0, panel.figure + ' shows nothing');
+      assert.ok(panel.numbers.length >= 4, panel.figure + ': ' + panel.numbers);
+    }
     for (const d of panel.paths) assert.doesNotMatch(d, /nan|inf|undefined/i, panel.figure);
   }
 });
