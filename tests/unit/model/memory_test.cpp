@@ -170,7 +170,9 @@ TEST(Memory, WithoutItsTermsItIsEquation16) {
         const LawState<double> memory = law_rate(p, Rung::memory, coupling, y, nu, d),
                                eq16 = law_rate(p, Rung::evolution, coupling, y, nu, d);
         EXPECT_NEAR(memory.P, eq16.P, 1e-13);
-        if (dx >= 0) EXPECT_LE((memory.sigma - eq16.sigma).norm(), 1e-13);  // Eq. (16) yields to shear alone
+        if (dx >= 0) {  // Eq. (16) yields to shear alone
+          EXPECT_LE((memory.sigma - eq16.sigma).norm(), 1e-13);
+        }
         y.sigma = m.s_max * P * kN;
         EXPECT_LE((law_rate(p, Rung::memory, coupling, y, nu, d).F - law_rate(p, Rung::evolution, coupling, y, nu, d).F)
                       .norm(),
