@@ -37,7 +37,7 @@ TEST_P(ExactData, EveryStageTogetherFindsTheTruth) {
   const fit::Calibration c = fit::calibrate(testing::synthetic_dataset(truth, options), calibration, {});
   // The memory rung is of another law than the one that made the data; memory_fit_test.cpp has its own.
   for (const fit::Stage& stage : c.stages) {
-    if (stage.name != "memory") EXPECT_TRUE(stage.converged) << stage.name << ": " << stage.termination;
+    EXPECT_TRUE(stage.converged || stage.name == "memory") << stage.name << ": " << stage.termination;
   }
   const auto value = fields(c.law.parameters);
   const auto expected = fields(truth);
