@@ -283,7 +283,8 @@ const save = (name, type, text) => {
 
 // The figure as one file, as it is shown now: legend above, panels in their columns.
 function svg_of(fig) {
-  const {width, height} = fig.panels[0].svg.viewBox.baseVal, total = width * fig.columns;
+  const boxes = fig.panels.map(p => p.svg.viewBox.baseVal), {width} = boxes[0], total = width * fig.columns;
+  const height = Math.max(...boxes.map(b => b.height));
   const plain = text => text.replace(/[<&]/g, '');
   let x = 10, y = 14, out = '';
   for (const entry of fig.element.querySelectorAll('.legend > :not(.toggles)')) {
@@ -302,17 +303,20 @@ function svg_of(fig) {
     out += `<g transform="translate(${i % fig.columns * width} ${top + Math.floor(i / fig.columns) * height})">${new XMLSerializer().serializeToString(copy)}</g>`;
   });
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 ${total} ${top + height * Math.ceil(fig.panels.length / fig.columns)}">` +
-    `<title>${plain(fig.title)}</title><style>${plain(document.querySelector('style').textContent)}svg{background:var(--ground)}</style>${out}</svg>\n`;
+    `<title>${plain(fig.title || '')}</title><style>${plain(document.querySelector('style').textContent)}svg{background:var(--ground)}</style>${out}</svg>\n`;
 }
 
 function start_figure(element) {
   const data = element.querySelector('script'), svgs = element.querySelectorAll('svg.p');
-  // A drawing has no numbers to point at.
-  if (!data || !svgs.length) return;
+  if (!svgs.length) return;
+  const tools = make('div', {class: 'tools'}), readout = make('output', {class: 'readout', 'aria-live': 'polite'});
+  element.querySelector('figcaption').before(tools);
   let fig;
   // Numbers are unpacked when a figure is first touched.
   const awake = () => {
     if (fig) return fig;
+    // A drawing has no numbers to point at.
+    if (!data) return fig = {element, columns: 2, panels: [...svgs].map(svg => ({svg}))};
     fig = read_figure(JSON.parse(data.textContent));
     Object.assign(fig, {element, readout});
     fig.panels.forEach((p, i) => {
@@ -333,20 +337,19 @@ function start_figure(element) {
     });
     return fig;
   };
-  const tools = make('div', {class: 'tools'}), readout = make('output', {class: 'readout', 'aria-live': 'polite'});
-  element.querySelector('figcaption').before(tools);
-  const button = (text, act) => make('button', {type: 'button', 'aria-label': `${text}, ${element.id}`}, tools, text)
+  const button = (text, act) => make('button', {'aria-label': `${text}, ${element.id}`}, tools, text)
     .addEventListener('click', () => act(awake()));
+  button('SVG', f => save(element.id + '.svg', 'image/svg+xml', svg_of(f)));
+  if (!data) return;
+  button('CSV', f => save(element.id + '.csv', 'text/csv', csv(f)));
   button('Zoom in', f => zoom(f, undefined, [.25, .75], [.25, .75]));
   button('Zoom out', f => zoom(f, undefined, [-.5, 1.5], [-.5, 1.5]));
   button('Whole', whole);
-  button('CSV', f => save(element.id + '.csv', 'text/csv', csv(f)));
-  button('SVG', f => save(element.id + '.svg', 'image/svg+xml', svg_of(f)));
   tools.append(readout);
   svgs.forEach(svg => {
     svg.setAttribute('tabindex', 0);
     svg.setAttribute('role', 'application');
-    svg.setAttribute('aria-roledescription', 'points; arrow keys read them, plus and minus zoom, Escape ends it');
+    svg.setAttribute('aria-roledescription', 'points: arrows read them, plus and minus zoom, Escape ends');
     for (const type of ['pointerenter', 'focus']) svg.addEventListener(type, awake, {once: true});
   });
 }
@@ -362,7 +365,7 @@ function start_table(table) {
   };
   heads.forEach((head, column) => {
     if (!head.textContent) return;
-    const button = make('button', {type: 'button', class: 'sort'});
+    const button = make('button', {class: 'sort'});
     button.append(...head.childNodes);
     head.append(button);
     button.addEventListener('click', () => {

@@ -235,13 +235,15 @@ test('numbers and drawings of each figure can be saved', async () => {
   for (const figure of figures) {
     for (const button of await figure.$$('.tools button')) await button.evaluate(b => { if (/CSV|SVG/.test(b.textContent)) b.click(); });
   }
-  await tab.waitForFunction(n => window.saved.length === n, {}, 2 * figures.length);
+  const with_numbers = (await tab.$$('figure:has(svg.p):has(script)')).length;
+  assert.ok(with_numbers >= figures.length - 1, 'all but the packing have numbers');
+  await tab.waitForFunction(n => window.saved.length === n, {}, figures.length + with_numbers);
   const checked = await tab.evaluate(() => window.saved.map(([type, text]) => {
     if (type === 'text/csv') return ['csv', text.split('\n').length, /^panel,series,/.test(text)];
     const svg = new DOMParser().parseFromString(text, 'image/svg+xml');
     return ['svg', svg.querySelectorAll('svg.p').length, !svg.querySelector('parsererror') && svg.querySelectorAll('svg.p path.l, svg.p path.m').length > 0];
   }));
-  assert.equal(checked.filter(c => c[0] === 'csv').length, figures.length);
+  assert.equal(checked.filter(c => c[0] === 'csv').length, with_numbers);
   for (const [kind, count, good] of checked) assert.ok(good && count > (kind === 'csv' ? 5 : 0), kind + ' ' + count);
   assert.deepEqual(complaints, []);
 });
