@@ -5,7 +5,7 @@
 # size, time and printed pages. Screenshots and prints are left in build/acceptance/page.
 # The way in (door.sh): both tutorials, the pages of docs/ as a site, seconds and commands from a clone to one's own path, the gallery.
 # --quick: the page of the shipped data, tutorials and site. Otherwise also the page of the quickstart, reused from build/acceptance
-# when finished, a fresh clone, built without a compiler cache, and the gallery.
+# when finished, a fresh clone, built without a compiler cache, the gallery, and the package on a bare system (package.sh).
 set -euo pipefail
 
 # shellcheck source=tests/acceptance/setup.sh
@@ -53,6 +53,13 @@ quickstart() {
   page quickstart "$folder" 1.5
 }
 
+package() {
+  local log=$pages/package.txt
+  tests/acceptance/package.sh >"$log" || true
+  grep -q ' ok$' "$log" || figure package missing ">=1"
+  while read -r name value bound _; do figure "$name" "$value" "$bound"; done <"$log"
+}
+
 paper
 tutorials
 site
@@ -60,5 +67,6 @@ if [[ $quick == no ]]; then
   quickstart
   own_path
   gallery
+  package
 fi
 finish_figures
