@@ -19,6 +19,8 @@ fi
 missing=()
 while read -r package _; do
   [[ -z $package || $package == \#* ]] && continue
+  # A nodejs that is not Debian's brings npm along and conflicts with Debian's.
+  [[ $package == npm ]] && command -v npm >/dev/null && continue
   status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
   [[ $status == installed ]] || missing+=("$package")
 done < <(cat "${lists[@]}")
