@@ -22,7 +22,8 @@ ln -s page.html link.html
 cmp -s page.html through || fail "the FIFO got something else than the link's target"
 [[ $(code_of "$grainlaw" report good -o -) == 0 && ! -e ./- ]] && cmp -s out page.html || fail "-o - is not standard output"
 [[ $(code_of "$grainlaw" report good -o - --json) == 2 ]] || fail "page and JSON on one output"
-[[ $(code_of "$grainlaw" init spec -o -) == 0 && ! -e ./- ]] && jq . <(grep -v '^ *//' out) >/dev/null || fail "init -o -"
+[[ $(code_of "$grainlaw" init spec -o -) == 0 && ! -e ./- ]] && cp out starter.json &&
+  [[ $(code_of "$grainlaw" check starter.json) == 0 ]] || fail "init -o - $(cat out err)"
 
 # a data set that is refused, before the fit or by it, changes nothing
 before=$(state_of)
