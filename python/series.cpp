@@ -16,13 +16,31 @@ namespace py = pybind11;
 
 using Data = std::shared_ptr<Dataset>;  // Python's hold on one; nothing changes it
 
+/// As PATH takes it: of a direction either the mode or the tensor.
+py::object path_to_python(const Path& path) {
+  OrderedJson json = path_to_json(path);
+  for (std::size_t k = 0; k < path.segments.size(); ++k) {
+    const PathSegment& segment = path.segments[k];
+    if (segment.mode == Mode::tensor) continue;
+    OrderedJson& written = json["segments"][k];
+    const bool forward = segment.direction.tensor == direction_of(segment.mode).tensor;
+    if (!segment.spin.isZero(0) || (!forward && segment.direction.tensor != direction_of(segment.mode, "xyz", true).tensor)) {
+      written.erase("mode");
+      continue;
+    }
+    written.erase("rate_tensor");
+    if (!forward) written["reverse"] = true;
+  }
+  return to_python(json);
+}
+
 void add_path(py::module_& module) {
   py::class_<StrainPath, std::shared_ptr<StrainPath>>(module, "Path", "A strain path, read once for many predictions.")
       .def(py::init([](const py::object& source) { return std::make_shared<StrainPath>(*path_of(source)); }),
            py::arg("source"), "Of a dict or the path of a JSON file.")
       .def_property_readonly("nu", [](const StrainPath& self) { return self.file.path.nu; })
       .def_property_readonly("segments", [](const StrainPath& self) { return self.file.path.segments.size(); })
-      .def("to_dict", [](const StrainPath& self) { return to_python(path_to_json(self.file.path)); })
+      .def("to_dict", [](const StrainPath& self) { return path_to_python(self.file.path); })
       .def("__repr__", [](const StrainPath& self) {
         return fmt::format("<Path {} from nu = {}, {} segments>", self.name, self.file.path.nu, self.file.path.segments.size());
       });
@@ -38,7 +56,7 @@ void add_test(py::module_& module) {
   py::class_<Test>(module, "Test", "One element test of a data set.")
       .def_property_readonly("name", [](const Test& self) { return self.get().record.name; })
       .def_property_readonly("role", [](const Test& self) { return to_string(self.get().record.role); })
-      .def_property_readonly("path", [](const Test& self) { return to_python(path_to_json(self.get().record.path)); })
+      .def_property_readonly("path", [](const Test& self) { return path_to_python(self.get().record.path); })
       .def_property_readonly("packing", [](const Test& self) { return to_python(fields_to_json(self.get().record.packing)); })
       .def_property_readonly("warnings", [](const Test& self) { return self.get().warnings; })
       .def_property_readonly("series",

@@ -15,7 +15,7 @@ import unittest
 import numpy as np
 
 import grainlaw
-from scene import DATASET, calibrated
+from scene import STARTERS, calibrated
 
 # A preparation that is short, and tests that take minutes.
 LONG = {"particles": 64, "seeds": [1], "strain_rate": 5000, "rows": 20, "densities": [0.78], "nu_end": 0.76,

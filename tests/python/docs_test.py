@@ -8,7 +8,7 @@ import sys
 
 import scene
 
-shutil.copytree(scene.DATASET, "dataset")
+shutil.copytree(scene.STARTERS, "dataset")
 page = (scene.SOURCE / "docs/python.md").read_text()
 blocks = re.findall(r"^```python\n(.*?)^```", page, re.M | re.S)
 session = {"__name__": "__docs__"}

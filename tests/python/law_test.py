@@ -1,7 +1,6 @@
 """The calibrated law in Python: parameters, predictions in memory beside those in files, batches beside single paths."""
 
 import csv
-import gc
 import json
 import os
 import subprocess
@@ -11,7 +10,7 @@ import unittest
 import numpy as np
 
 import grainlaw
-from scene import TURN, UNI, calibrated
+from scene import TURN, UNI, calibrated, part_of_the_papers_data
 
 
 def columns_of(file):
@@ -22,7 +21,7 @@ def columns_of(file):
 
 def setUpModule():
     global calibration, law
-    calibration = calibrated()
+    calibration = calibrated(dataset=part_of_the_papers_data())
     law = calibration.law
 
 
@@ -95,7 +94,7 @@ class Predictions(unittest.TestCase):
             self.assertEqual(again.recommended, folder.recommended)
 
     def test_at_the_rows_of_a_test(self):
-        test = calibration.dataset["D2-0.75-s2"]
+        test = calibration.dataset["D2-0.74-s2"]
         for start in ("law", "measured"):
             curve = law.predict(test, "evolution", start=start)
             self.assertEqual((curve.seed, curve.start, curve.rows), (2, start, test.series.rows))
@@ -128,10 +127,10 @@ class Batches(unittest.TestCase):
     def histories(self, paths, steps, scale):
         random = np.random.default_rng(7)
         steps = scale * random.normal(size=(paths, steps, 6)) * [1, 1, 1, 0.5, 0.5, 0.5]
-        return np.cumsum(steps, axis=1), random.uniform(0.68, 0.80, paths)
+        return np.cumsum(steps, axis=1), random.uniform(0.68, 0.76, paths)
 
     def test_each_path_is_that_of_a_single_prediction(self):
-        strain, nu = self.histories(60, 4, 0.01)
+        strain, nu = self.histories(60, 4, 0.015)
         for model in law.models:
             batch = law.predict_batch(strain, nu, model, accuracy=1e-10)
             unjammed = 0

@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 import grainlaw
-from scene import DATASET, TURN, UNI, calibrated
+from scene import STARTERS, UNI, calibrated, part_of_the_papers_data
 
 NAN, HUGE = float("nan"), 10**30
 
@@ -25,7 +25,7 @@ def with_nu(nu):
 class Refusals(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.law = calibrated().law
+        cls.law = calibrated(dataset=part_of_the_papers_data()).law
 
     def refused(self, said, call, *arguments, **keywords):
         before = sorted(pathlib.Path(".").rglob("*"))
@@ -69,8 +69,8 @@ class Refusals(unittest.TestCase):
                                ("progress", {"progress": 1}), ("loss", {"loss": "none"}), ("starts", {"starts": -1}),
                                ("coupling", {"coupling": "weak"}), ("prior", {"prior": "no.json"}), ("output", {"output": 3}),
                                ("output", {"output": None})]:
-            self.refused(said, grainlaw.calibrate, dataset=DATASET, **({"output": "out"} | keywords))
-        self.refused("excludes", grainlaw.predict, self.law, UNI, "out", dem=True, against=DATASET)
+            self.refused(said, grainlaw.calibrate, dataset=STARTERS, **({"output": "out"} | keywords))
+        self.refused("excludes", grainlaw.predict, self.law, UNI, "out", dem=True, against=STARTERS)
         self.refused("dem=True", grainlaw.predict, self.law, UNI, "out", seeds=[1])
         self.refused("seeds", grainlaw.predict, self.law, UNI, "out", dem=True, seeds=["one"])
         self.refused("initial", grainlaw.predict, self.law, UNI, "out", start="measured")
