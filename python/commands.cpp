@@ -170,17 +170,17 @@ py::list curves_of(const Predicted& self) {
 }
 
 void add_results(py::module_& module) {
-  py::class_<Simulation>(module, "Simulation", "What simulate() has run.")
+  plain_class<Simulation>(module, "Simulation", "What simulate() has run.")
       .def_readonly("series", &Simulation::series)
       .def_readonly("warnings", &Simulation::warnings)
       .def_property_readonly("summary", [](const Simulation& self) { return to_python(self.summary); });
-  py::class_<Calibration>(module, "Calibration", "What calibrate() has found.")
+  plain_class<Calibration>(module, "Calibration", "What calibrate() has found.")
       .def_readonly("law", &Calibration::law)
       .def_readonly("dataset", &Calibration::dataset)
       .def_readonly("warnings", &Calibration::warnings)
       .def_property_readonly("summary", [](const Calibration& self) { return to_python(self.summary); })
       .def_property_readonly("folder", [](const Calibration& self) { return self.folder.string(); });
-  py::class_<Predicted>(module, "PredictionFolder", "The curves of a path, and how far they are from runs.")
+  plain_class<Predicted>(module, "PredictionFolder", "The curves of a path, and how far they are from runs.")
       .def(py::init([](const py::object& given) {
              const fs::path folder = file_of(given, "folder");
              return Predicted{std::make_shared<predict::PredictionFolder>(predict::read_prediction(folder)), folder};

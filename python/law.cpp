@@ -203,7 +203,7 @@ py::dict range_of(const Law& self) {
 }
 
 void add_parameter(py::module_& module) {
-  py::class_<Parameter>(module, "Parameter", "A parameter of the law as the data determine it; all are dimensionless.")
+  plain_class<Parameter>(module, "Parameter", "A parameter of the law as the data determine it; all are dimensionless.")
       .def_property_readonly("name", [](const Parameter& p) { return p.info().name; })
       .def_property_readonly("value", [](const Parameter& p) { return p.known() ? std::optional(p.value) : std::nullopt; })
       .def_property_readonly("standard_error", [](const Parameter& p) { return if_number(p.estimate.standard_error); })
@@ -229,7 +229,7 @@ void add_parameter(py::module_& module) {
 }
 
 void add_batch(py::module_& module) {
-  py::class_<Batch>(module, "Batch", "The law's state at the end of each step of each path; zero while unjammed.")
+  plain_class<Batch>(module, "Batch", "The law's state at the end of each step of each path; zero while unjammed.")
       .def_property_readonly("P_star",
                              [](const py::object& self) {
                                const Batch& batch = self.cast<const Batch&>();
@@ -264,7 +264,7 @@ void add_law(py::module_& module) {
     for (std::size_t i = 0; i < kParameterCount; ++i) all[parameter_table()[i].name] = parameter_of(self, i);
     return all;
   };
-  py::class_<Law, std::shared_ptr<Law>>(module, "CalibratedLaw",
+  plain_class<Law, std::shared_ptr<Law>>(module, "CalibratedLaw",
                                         "A calibrated law: parameters.json, or the folder of a calibration. Immutable.")
       .def(py::init([](const py::object& file) { return std::make_shared<Law>(*law_of(file)); }), py::arg("file"))
       .def_property_readonly("file", [](const Law& self) { return self.file.empty() ? py::none() : py::cast(self.file.string()); })

@@ -58,6 +58,12 @@ struct Test {
   const DatasetTest& get() const { return dataset->tests[index]; }
 };
 
+/// Of every class of the module: nobody derives from it, and its own class is Python's `type`.
+template <class T, class... Holder>
+pybind11::class_<T, Holder...> plain_class(pybind11::module_& module, const char* name, const char* doc) {
+  return {module, name, pybind11::is_final(), pybind11::metaclass(reinterpret_cast<PyObject*>(&PyType_Type)), doc};
+}
+
 /// A Path as it is, or made of a dict or file.
 std::shared_ptr<const StrainPath> path_of(pybind11::handle object);
 

@@ -35,7 +35,7 @@ py::object path_to_python(const Path& path) {
 }
 
 void add_path(py::module_& module) {
-  py::class_<StrainPath, std::shared_ptr<StrainPath>>(module, "Path", "A strain path, read once for many predictions.")
+  plain_class<StrainPath, std::shared_ptr<StrainPath>>(module, "Path", "A strain path, read once for many predictions.")
       .def(py::init([](const py::object& source) { return std::make_shared<StrainPath>(*path_of(source)); }),
            py::arg("source"), "Of a dict or the path of a JSON file.")
       .def_property_readonly("nu", [](const StrainPath& self) { return self.file.path.nu; })
@@ -47,13 +47,13 @@ void add_path(py::module_& module) {
 }
 
 void add_series_type(py::module_& module) {
-  py::class_<Series> type(module, "Series", "What was seen of a packing along a test: read-only arrays by the CSV's names.");
+  auto type = plain_class<Series>(module, "Series", "What was seen of a packing along a test: read-only arrays by the CSV's names.");
   add_columns<Observation>(type, [](const Series& self) -> const auto& { return *self.rows; });
   type.def("__repr__", [](const Series& self) { return fmt::format("<Series of {} rows>", self.rows->size()); });
 }
 
 void add_test(py::module_& module) {
-  py::class_<Test>(module, "Test", "One element test of a data set.")
+  plain_class<Test>(module, "Test", "One element test of a data set.")
       .def_property_readonly("name", [](const Test& self) { return self.get().record.name; })
       .def_property_readonly("role", [](const Test& self) { return to_string(self.get().record.role); })
       .def_property_readonly("path", [](const Test& self) { return path_to_python(self.get().record.path); })
@@ -81,7 +81,7 @@ py::list names_of_tests(const Data& data) {
 }
 
 void add_dataset(py::module_& module) {
-  py::class_<Dataset, Data>(module, "Dataset", "The tests of a data set, by their names.")
+  plain_class<Dataset, Data>(module, "Dataset", "The tests of a data set, by their names.")
       .def(py::init([](const py::object& folder) {
              const std::filesystem::path from = dataset_folder(file_of(folder, "folder"));
              const py::gil_scoped_release unlocked;
@@ -104,7 +104,7 @@ void add_dataset(py::module_& module) {
 }
 
 void add_prediction(py::module_& module) {
-  py::class_<Curve> type(module, "Prediction", "The law along a path: read-only arrays by the CSV's names.");
+  auto type = plain_class<Curve>(module, "Prediction", "The law along a path: read-only arrays by the CSV's names.");
   add_columns<predict::PredictedRow>(type, [](const Curve& self) -> const auto& { return self.prediction->rows; });
   type.def_property_readonly("model", [](const Curve& self) { return to_string(self.prediction->model); })
       .def_property_readonly("start", [](const Curve& self) { return to_string(self.initial); })

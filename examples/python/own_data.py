@@ -5,6 +5,7 @@ prediction. Writes own_data/ and own_law/.
 The arrays are a part of the paper's data here; they could come from any simulation: logarithmic strain since the start of the
 test (tension positive), volume fraction, stress in Pa (compression positive), fabric, contacts."""
 
+import csv
 import json
 import pathlib
 import re
@@ -27,8 +28,11 @@ def write_dataset(folder, tests):
         columns = {column: arrays[column.split("[")[0]] for column in COLUMNS} | {"time[s]": np.arange(len(zero))}
         for tensor, unit in (("strain", ""), ("stress", "[Pa]"), ("fabric", "")):  # coaxial: no shear components
             columns |= {f"{tensor}_{component}{unit}": zero for component in ("yz", "xz", "xy")}
-        np.savetxt(folder / f"{name}.csv", np.column_stack(list(columns.values())), delimiter=",", header=",".join(columns),
-                   comments="", fmt="%.17g")
+        with open(folder / f"{name}.csv", "w", newline="") as file:
+            table = csv.writer(file)
+            table.writerow(columns)
+            for row in zip(*columns.values()):  # what is undefined is an empty field
+                table.writerow(["" if np.isnan(value) else repr(float(value)) for value in row])
         index.append({"name": name, "role": role, "path": path, "packing": packing})
     (folder / "dataset.json").write_text(json.dumps({"tests": index}))
 

@@ -1,7 +1,7 @@
 """Types of the extension module. What a call reads, does and throws: docs/python.md."""
 
 import os
-from typing import Any, Callable, ClassVar, Iterable, Iterator, Literal, Optional, Union
+from typing import Any, Callable, ClassVar, Iterable, Iterator, Literal, Optional, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +26,7 @@ class NotConverged(Error):
 class Interrupted(KeyboardInterrupt):
     exit_code: ClassVar[int]
 
+@final
 class Path:
     def __init__(self, source: _Document) -> None: ...
     @property
@@ -46,8 +47,10 @@ class _Columns:
     def __getattr__(self, name: str, /) -> NDArray[Any]: ...
     def __dir__(self) -> list[str]: ...
 
+@final
 class Series(_Columns): ...
 
+@final
 class Prediction(_Columns):
     @property
     def model(self) -> _Model: ...
@@ -64,6 +67,7 @@ class Prediction(_Columns):
     @property
     def statistics(self) -> dict[str, Any]: ...
 
+@final
 class Test:
     @property
     def name(self) -> str: ...
@@ -78,6 +82,7 @@ class Test:
     @property
     def series(self) -> Series: ...
 
+@final
 class Dataset:
     def __init__(self, folder: _File) -> None: ...
     def keys(self) -> list[str]: ...
@@ -92,6 +97,7 @@ class Dataset:
     @property
     def digest(self) -> str: ...
 
+@final
 class Parameter:
     @property
     def name(self) -> str: ...
@@ -118,6 +124,7 @@ class Parameter:
     @property
     def published(self) -> Optional[float]: ...
 
+@final
 class Batch:
     @property
     def P_star(self) -> _Floats: ...
@@ -126,6 +133,7 @@ class Batch:
     @property
     def fabric_dev(self) -> _Floats: ...
 
+@final
 class CalibratedLaw:
     def __init__(self, file: _File) -> None: ...
     @property
@@ -168,6 +176,7 @@ class CalibratedLaw:
         threads: Optional[int] = None,
     ) -> Batch: ...
 
+@final
 class Simulation:
     @property
     def series(self) -> Series: ...
@@ -176,6 +185,7 @@ class Simulation:
     @property
     def summary(self) -> dict[str, Any]: ...
 
+@final
 class Calibration:
     @property
     def law(self) -> CalibratedLaw: ...
@@ -188,6 +198,7 @@ class Calibration:
     @property
     def folder(self) -> str: ...
 
+@final
 class PredictionFolder:
     def __init__(self, folder: _File) -> None: ...
     @property

@@ -32,7 +32,9 @@ class Types(unittest.TestCase):
                               env=os.environ | {"MYPYPATH": str(PACKAGE)})
 
     def test_stubtest(self):
-        found = subprocess.run([sys.executable, "-m", "mypy.stubtest", "grainlaw"], capture_output=True, text=True,
+        # pybind11 tells the signature of no __init__, and gives one that refuses to those that have none
+        pathlib.Path("unknown").write_text(r"grainlaw\..*\.__init__")
+        found = subprocess.run([sys.executable, "-m", "mypy.stubtest", "--allowlist", "unknown", "grainlaw"], capture_output=True, text=True,
                                env=os.environ | {"MYPYPATH": str(PACKAGE)})
         self.assertEqual(found.returncode, 0, found.stdout + found.stderr)
 
