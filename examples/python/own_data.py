@@ -14,7 +14,7 @@ import numpy as np
 
 import grainlaw
 
-COLUMNS = ["strain_xx", "strain_yy", "strain_zz", "nu", "stress_xx[Pa]", "stress_yy[Pa]", "stress_zz[Pa]", "fabric_xx",
+COLUMNS = ["segment", "strain_xx", "strain_yy", "strain_zz", "nu", "stress_xx[Pa]", "stress_yy[Pa]", "stress_zz[Pa]", "fabric_xx",
            "fabric_yy", "fabric_zz", "C_star", "rattler_fraction"]
 
 
