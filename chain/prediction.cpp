@@ -262,10 +262,14 @@ void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& con
 }  // namespace
 
 PredictionInput read_prediction_input(const fs::path& parameters, const fs::path& path) {
+  return prediction_input(parameters, read_path(path), path.string());
+}
+
+PredictionInput prediction_input(const fs::path& parameters, PathFile path, const std::string& path_name) {
   PredictionInput input{.law = read_parameters(parameters).law,
                         .law_name = parameters.string(),
-                        .path = read_path(path),
-                        .path_name = path.string()};
+                        .path = std::move(path),
+                        .path_name = path_name};
   input.parameters = {{"file", parameters.string()},
                       {"sha256", sha256_of_file(parameters)},
                       {"dataset_digest", input.law.dataset_digest}};

@@ -87,9 +87,7 @@ void check_given(const State& given, const EngineOptions& engine, const std::str
 
 }  // namespace
 
-TestFile read_test(const std::filesystem::path& file) {
-  const Json document = read_json(file, JsonSource::user);
-  const std::string name = one_line(file.string(), 200);
+TestFile test_from_document(const Json& document, const std::filesystem::path& folder, const std::string& name) {
   check_schema(document, Schema::test, name);
   TestFile test;
   test.start = start_from(document, name);
@@ -111,7 +109,7 @@ TestFile read_test(const std::filesystem::path& file) {
   if (made) complete_preparation(preparation, name);
   if (test.start == Start::preparation) return test;
 
-  const auto beside = [&](const char* key) { return file.parent_path() / document[key].get<std::string>(); };
+  const auto beside = [&](const char* key) { return folder / document[key].get<std::string>(); };
   if (test.start == Start::spheres) {
     test.given = read_spheres(beside("spheres"), cell_from(document["cell"]), preparation.packing.material);
     test.given_digest = sha256(sha256_of_file(beside("spheres")) + document["cell"].dump());
@@ -126,6 +124,10 @@ TestFile read_test(const std::filesystem::path& file) {
   test.path = path_from_json(path, name, "", false);
   check_path(test.path, preparation, name);
   return test;
+}
+
+TestFile read_test(const std::filesystem::path& file) {
+  return test_from_document(read_json(file, JsonSource::user), file.parent_path(), one_line(file.string(), 200));
 }
 
 }  // namespace grainlaw::dem
