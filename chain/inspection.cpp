@@ -146,7 +146,7 @@ void inspect_mapping(const fs::path& file, const Execution& execution, Inspectio
   for (const ForeignTest& test : read_foreign(mapping, execution)) {
     const ImportedTest ours = imported(mapping, test);
     rows += ours.record.rows.size();
-    paths.push_back(fmt::format("{}: {}", ours.record.name, ours.says.front()));
+    paths.push_back(fmt::format("{}: {}", ours.record.name, ours.says.at(1)));
   }
   seen.holds = {fmt::format("{} of others, {}", counted(mapping.tests.size(), "test"), counted(rows, "row"))};
   seen.holds.insert(seen.holds.end(), paths.begin(), paths.end());

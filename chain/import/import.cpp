@@ -95,7 +95,7 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
                                    test.mapping.path_tolerance));
   complete(record.rows, record.path, record.packing);
   check_series(record.rows, record.path, record.packing, foreign.place);
-  result.says = {fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
+  result.says = {fmt::format("{} rows", record.rows.size()), fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
                  fmt::format("rows moved onto it by {:.2g} at most, tolerance {:g}", moved.farthest,
                              test.mapping.path_tolerance)};
   result.provenance = foreign.provenance;
