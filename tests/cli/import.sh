@@ -113,4 +113,7 @@ refused 'another path' '.tests[3].path = {segments: [{mode: "UNI", extent: {eps_
 refused 'void ratio of another volume' . '8s/^(([^;]*;){4})[^;]*/\10.5/' "line 8, column 'void ratio'"
 refused 'unknown key' '.tests[0].series.unit = "kPa"' '' "unknown key 'unit'" "did you mean 'units'?"
 refused 'no packing' 'del(.packings.p1.particles)' '' "misses the key 'particles'"
-echo "ok"
+cp -r theirs kept
+code=0
+"$grainlaw" import mapping.json -o theirs 2>error >/dev/null || code=$?
+[[ $code == 2 ]] && grep -q 'give another folder with -o' error && diff -r theirs kept || fail "tables would be overwritten: $(cat error)"
