@@ -194,7 +194,8 @@ LawState<double> state_from_row(const Observation& row) {
   }
   const LawState<double> state{row.P_star, deviator<double>(row.stress.tensor) * (row.P_star / P),
                                deviator<double>(row.fabric.tensor)};
-  if (!is_defined(state, Rung::reduced)) throw InvalidInput("the measured start has a stress that is not finite");
+  if (!is_defined(state, Rung::reduced) || !(state.F.allFinite() || row.fabric.tensor.array().isNaN().all()))
+    throw InvalidInput("the measured start has a stress or fabric that is not finite");
   return state;
 }
 

@@ -21,11 +21,28 @@ using Tensor = Eigen::Matrix3d;
 
 double component_along(const Tensor& strain, const Tensor& D) { return strain.cwiseProduct(D).sum() / D.squaredNorm(); }
 
-/// Distance of `strain` from the piece of line from `a` to `b`.
-double distance(const Tensor& strain, const Tensor& a, const Tensor& b) {
-  const Tensor D = b - a;
-  const double e = D.squaredNorm() > 0 ? std::clamp(component_along(strain - a, D), 0.0, 1.0) : 0;
-  return (strain - a - e * D).norm();
+/// The row that misses the piece of line from row `a` to row `b` by most and by more than `tolerance`, or from which on rows go back
+/// along it by that much; `a` when there is none.
+std::size_t worst_row(const std::vector<Observation>& rows, std::size_t a, std::size_t b, double tolerance) {
+  const Tensor from = rows[a].strain.tensor, D = rows[b].strain.tensor - from;
+  double worst = tolerance, farthest = 0;
+  std::size_t corner = a, turn = a;
+  for (std::size_t i = a + 1; i < b; ++i) {
+    const Tensor along = rows[i].strain.tensor - from;
+    const double e = D.squaredNorm() > 0 ? std::clamp(component_along(along, D), 0.0, 1.0) : 0;
+    if (const double off = (along - e * D).norm(); off > worst) {
+      worst = off;
+      corner = i;
+    }
+    if (const double back = (farthest - e) * D.norm(); back > worst) {
+      worst = back;
+      corner = turn;
+    }
+    if (e <= farthest) continue;
+    farthest = e;
+    turn = i;
+  }
+  return corner;
 }
 
 /// Rows that are corners between `first` and `last`, without them, appended in order.
@@ -35,14 +52,7 @@ void find_corners(const std::vector<Observation>& rows, std::size_t first, std::
   while (!open.empty()) {
     const auto [a, b] = open.back();
     open.pop_back();
-    double farthest = tolerance;
-    std::size_t corner = a;
-    for (std::size_t i = a + 1; i < b; ++i) {
-      const double off = distance(rows[i].strain.tensor, rows[a].strain.tensor, rows[b].strain.tensor);
-      if (off <= farthest) continue;
-      farthest = off;
-      corner = i;
-    }
+    const std::size_t corner = worst_row(rows, a, b, tolerance);
     if (corner == a) continue;
     if (corners.size() == kMaxFoundSegments)
       throw InvalidInput(fmt::format("the strains turn more than {} times; give a path, a larger path_tolerance (now {:g}), or "

@@ -45,6 +45,16 @@ TEST(StraightPath, IsFoundAgain) {
   }
 }
 
+// Unloading and loading again lie on the line from the first to the last row.
+TEST(StraightPath, TurnsOnOneLineAreFound) {
+  const Path loop{0.7, Branch::unloading,
+                  {segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.1), segment(Mode::D2, "xyz", true, ExtentKind::eps_dev, 0.04),
+                   segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.15)}};
+  const auto found = found_segments(rows_along(loop, 25, 1e-6), 1e-4);
+  ASSERT_EQ(found.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k].extent, loop.segments[k].extent, 1e-5);
+}
+
 TEST(StraightPath, KeepsTheVolumeOfAShearThatIsNoMode) {
   Eigen::Matrix3d D = Eigen::Vector3d(0.7, 0.2, -0.9).asDiagonal();
   D(0, 1) = D(1, 0) = 0.3;
@@ -99,7 +109,12 @@ TEST(StraightPath, CyclesAreToldApartWithoutRowsAtTheCorners) {
     expected.push_back(static_cast<int>(i / 21));
   }
   EXPECT_LE(move_onto(cycles, without_corners).farthest, 1e-12);
-  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(without_corners[i].segment, expected[i]) << i;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const bool first = i > 0 && expected[i] != expected[i - 1];  // at the strain of the last before: may belong to either
+    if (!first) {
+      EXPECT_EQ(without_corners[i].segment, expected[i]) << i;
+    }
+  }
 }
 
 TEST(StraightPath, RefusesStrainsThatSayNone) {

@@ -39,7 +39,7 @@ TEST(WithoutFabric, PressureAndStressRatioAreFitted) {
   EXPECT_EQ(richest_rung(without.law), Rung::reduced);
   for (const double nu : {0.68, 0.70, 0.74, 0.78, 0.82}) {
     EXPECT_NEAR(law.isotropic.P_star(nu) / truth.isotropic.P_star(nu), 1, 0.005) << nu;  // C is that of the truth, up to nu_c
-    EXPECT_NEAR(law.steady.P_star(nu) / truth.steady.P_star(nu), 1, 0.02) << nu;
+    EXPECT_NEAR(law.steady.P_star(nu) / truth.steady.P_star(nu), 1, 0.04) << nu;  // whose two nu_c differ by .002
     EXPECT_NEAR(law.stress_ratio_max.value(nu, law.shear_nu_c) / truth.stress_ratio_max.value(nu, truth.shear_nu_c), 1, 0.03) << nu;
   }
   EXPECT_EQ(of(without, "pressure.p0").status, Status::fitted);

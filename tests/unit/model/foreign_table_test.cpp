@@ -23,7 +23,7 @@ void expect_titles(const ForeignTable& table, const std::vector<std::string>& ti
 }
 
 TEST(ForeignText, IsReadWithAnyDelimiter) {
-  for (const std::string d : {",", ";", "\t", " ", "   ", " ,\t", " ; "}) {
+  for (const std::string d : {",", ";", "\t", " ", "   ", " , ", " ; "}) {
     const ForeignTable table = text("a" + d + "sxx[kPa]\n1" + d + "-2.5e3\r\n\n+3" + d + "4\n");
     expect_titles(table, {"a", "sxx[kPa]"});
     EXPECT_EQ(table.columns[0].values, (std::vector<double>{1, 3})) << d;

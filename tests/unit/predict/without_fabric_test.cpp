@@ -26,7 +26,7 @@ TEST(PredictionWithoutFabric, SaysNothingOfIt) {
                             predict::uniform_points(segments, 10), {}, ValidRange{}, {}, {uncertain_parameters(law), true});
   };
   const predict::Prediction prediction = along(Rung::reduced);
-  ASSERT_EQ(prediction.rows.size(), 10u);
+  ASSERT_EQ(prediction.rows.size(), 11u);
   for (const predict::PredictedRow& row : prediction.rows) {
     EXPECT_NEAR(row.state.P, law.parameters.isotropic.P_star(row.nu), 1e-12);
     EXPECT_TRUE(std::isfinite(row.s_par) && std::isnan(row.F_par) && std::isnan(row.F_dev) && row.state.F.array().isNaN().all());
