@@ -83,7 +83,7 @@ std::vector<ForeignTest> read_foreign(const Mapping& mapping, const Execution& e
   for (const TestMapping& test : mapping.tests) {
     if (execution.stop.stop_requested()) throw Interrupted("interrupted; nothing was written");
     tests.push_back({test, test.series ? read_series(mapping, test)
-                                      : read_particle_rows(mapping, test, {.report = {}, .stop = execution.stop})});
+                                       : read_particle_rows(mapping, test, {.report = {}, .stop = execution.stop})});
   }
   return tests;
 }

@@ -76,7 +76,8 @@ class SeriesOfFrames {
     const Packing& p = frame.packing;
     Observation row;
     row.time = frame.time;
-    set_averages(row, request_.contacts ? given(frame) : by_law(frame, L, row), p, request_.stiffness, {}, false);
+    set_averages(row, request_.contacts ? given(frame) : by_law(frame, L, row), p, request_.stiffness,
+                 Deviator<double>::Zero(), false);
     const double P = row.stress.tensor.trace() / 3;
     if (!std::isnan(request_.density)) {
       if (frame.has_velocities) {
