@@ -241,22 +241,9 @@ std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const Prediction
               input.path_name);
 }
 
-/// What `work` returns; folders that it leaves empty when it throws are removed, `inner` before `outer`.
-template <class Work>
-auto without_empty_folders(const fs::path& inner, const fs::path& outer, const Work& work) {
-  try {
-    return work();
-  } catch (...) {
-    std::error_code not_empty;  // then it stays
-    fs::remove(inner, not_empty);
-    fs::remove(outer, not_empty);
-    throw;
-  }
-}
-
 Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& output,
                   const Execution& execution) {
-  return without_empty_folders(output / "dem", output, [&] {
+  return without_empty_folders({output / "dem", output}, [&] {
     make_output_folder(output);
     const fs::path folder = make_subfolder(output, "dem");
     make_output_folder(runs.store);

@@ -88,7 +88,7 @@ class SeriesOfFrames {
     }
     set_path(row, stretch(p.H), frame.source);
     series_.rows.push_back(row);
-    series_.places.push_back(frame.source.refusal("").what());
+    series_.places.push_back(frame.source.where());
   }
 
   ContactSums given(const Frame& frame) {
