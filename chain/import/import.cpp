@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "chain/import/particles.hpp"
 #include "chain/import/series.hpp"
 #include "chain/import/straight_path.hpp"
 #include "model/files/csv_table.hpp"
@@ -81,8 +82,8 @@ std::vector<ForeignTest> read_foreign(const Mapping& mapping, const Execution& e
   std::vector<ForeignTest> tests;
   for (const TestMapping& test : mapping.tests) {
     if (execution.stop.stop_requested()) throw Interrupted("interrupted; nothing was written");
-    if (!test.series) throw InvalidInput(fmt::format("{}: test {}: particles cannot be read yet", mapping.name, test.name));
-    tests.push_back({test, read_series(mapping, test)});
+    tests.push_back({test, test.series ? read_series(mapping, test)
+                                       : read_particle_rows(mapping, test, {.report = {}, .stop = execution.stop})});
   }
   return tests;
 }
