@@ -76,7 +76,7 @@ std::vector<Reader> readers_of_dem(const fs::path& scene) {
       {"run", Shape::json, "store/runs/key/run.json",
        [store = std::make_shared<dem::RunStore>(scene / "store", "runs")](std::string_view, const fs::path&) {
          const auto record = store->find("key");
-         if (!record) return;
+         if (!record || record->at("packing").is_null()) return;
          dem::packing_from_record(*record);
          dem::cost_from_record(*record);
        }},

@@ -65,7 +65,7 @@ run=$(dirname "${runs[0]}")
 cp "$run"/* store/runs/key
 jq -c '.key = "key"' "$run/run.json" >store/runs/key/run.json
 echo '{"states": [], "warnings": ["w"], "files": {}}' >progress/progress.json
-slim "$source/examples/paper/data/dataset/pictures.json" 2 >pictures/pictures.json
+slim "$source/examples/paper/data/dataset/pictures.json" 18 >pictures/pictures.json
 
 slim "$work/law/parameters.json" | jq -c 'del(.provenance, .parameters[].symbol, .parameters[].equation)' >parameters/parameters.json
 cp parameters/parameters.json fitted_paths
@@ -87,8 +87,10 @@ for name in path spec test parameters prior dataset; do
     if [[ -e $file ]]; then cp "$file" "seeds/schema/$name-$(basename "$file")"; fi
   done
 done
-cp seeds/schema/*.json seeds/json
 cat >seeds/json/all.json <<'JSON'
 {"a": [0, -1, 1.5e-3, 1e308, 18446744073709551615, true, false, null, "\u00e9\ud83d\ude00\\\"\n", {}, []], "b": {"c": [[[]]]}} // end
 JSON
+echo '{"p": {"value": -0.0, "note": "x"}, "m": [[1e-300, -0.0], [0, 2.5e3]]}' >seeds/json/matrix.json
+cp path/path.json seeds/json
 cp -r seeds/json seeds/json-own
+rm seeds/json-own/all.json
