@@ -42,7 +42,7 @@ cp "$work/path.json" path/path.json
 cp "$work/modes.json" "$source"/examples/starters/path.json "$source"/examples/law/{d2-d3,cycles/cyclic-0.69-small}.json seeds/path
 echo '{"initial": {"nu": 0.72}, "strain_csv": "strain.csv"}' >strain/path.json
 cut -d, -f 1-8 "$work/sim/series.csv" >strain/strain.csv
-jq -c '.tests |= map(select(.name == "D2-0.68-s1" or .name == "D2-0.68-s2")) | del(.comment, .["$schema"])' \
+jq -c '.tests |= map(select(.name == "D2-0.68-s1" or .name == "D2-0.68-s2")) | .tests[].role = "validation" | del(.comment, .["$schema"])' \
   "$source/examples/starters/dataset/dataset.json" >dataset/dataset.json
 for seed in 1 2; do head -4 "$source/examples/starters/dataset/D2-0.68-s$seed.csv" >"dataset/D2-0.68-s$seed.csv"; done
 
@@ -71,10 +71,10 @@ slim "$work/law/parameters.json" | jq -c 'del(.provenance, .parameters[].symbol,
 cp parameters/parameters.json fitted_paths
 slim "$source/fit/packing_prior.json" 2 | jq -c '. + {format: "grainlaw prior", format_version: 1}' >prior/prior.json
 slim "$work/law/calibration.json" 2 | jq -c 'del(.provenance)' >calibration/calibration.json
-slim "$work/law/fitted_paths.json" 2 >fitted_paths/fitted_paths.json
-slim "$work/study/study.json" 2 >study/study.json
-slim "$work/prediction/prediction.json" 2 | jq -c 'del(.provenance.command) | .curves |= .[:1]' >prediction/prediction.json
-slim "$work/prediction/comparison.json" 2 >comparison/comparison.json
+slim "$work/law/fitted_paths.json" >fitted_paths/fitted_paths.json
+slim "$work/study/study.json" >study/study.json
+slim "$work/prediction/prediction.json" | jq -c 'del(.provenance.command) | .curves |= .[:1]' >prediction/prediction.json
+slim "$work/prediction/comparison.json" >comparison/comparison.json
 cp prediction/prediction.json comparison
 for folder in prediction comparison; do
   cp -r "$work/prediction/dem" $folder
