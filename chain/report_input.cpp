@@ -6,6 +6,7 @@
 
 #include "fit/calibration_file.hpp"
 #include "model/files/digest.hpp"
+#include "model/files/one_line.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -63,7 +64,8 @@ void add_studies(const fs::path& dir, ReportInput& input) {
     if (!fs::exists(file)) continue;
     const Json document = read_json(file, JsonSource::own);
     if (!document.is_object() || document.value("format", Json()) != "grainlaw study")
-      throw InvalidInput(fmt::format("{}: is no study.json: its format must be \"grainlaw study\"; remove it", file.string()));
+      throw InvalidInput(
+          fmt::format("{}: is no study.json: its format must be \"grainlaw study\"; remove it", file.string()));
     try {
       if (document.contains("settings"))
         input.studies.emplace_back(folder.filename().string(), study_from_json(document));

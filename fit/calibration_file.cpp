@@ -123,7 +123,8 @@ std::vector<LeftOut> left_out_from_json(const Json& object) {
   std::vector<LeftOut> fits;
   if (object.is_null()) return fits;
   for (std::size_t k = 0; k < object.at("seeds").size(); ++k)
-    fits.push_back({whole_number<std::uint64_t>(object["seeds"].at(k)), std::vector<double>(kParameterCount, std::nan("")), object.at("notes").at(k)});
+    fits.push_back({whole_number<std::uint64_t>(object["seeds"].at(k)),
+                    std::vector<double>(kParameterCount, std::nan("")), object.at("notes").at(k)});
   for (const auto& item : object.at("parameters").items()) {
     for (std::size_t k = 0; k < fits.size(); ++k)
       fits[k].value[parameter_index(item.key())] = number_or_nan(item.value().at("values").at(k));

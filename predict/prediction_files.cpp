@@ -49,8 +49,8 @@ void read_named(const fs::path& file, const Read& read) {
   try {
     read();
   } catch (const Json::exception& error) {
-    throw InvalidInput(fmt::format("{}: is not of this version: {}; run grainlaw predict again", name,
-                                   one_line(error.what(), 200)));
+    throw InvalidInput(
+        fmt::format("{}: is not of this version: {}; run grainlaw predict again", name, one_line(error.what(), 200)));
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", name, one_line(error.what(), 300)));
   }

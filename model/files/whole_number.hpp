@@ -12,9 +12,13 @@ namespace grainlaw {
 /// number: of -1 as of 1e300.
 template <std::integral T>
 T whole_number(const Json& value) {
-  const bool fits = value.is_number_unsigned() ? std::in_range<T>(value.get<std::uint64_t>())
-                                               : value.is_number_integer() && std::in_range<T>(value.get<std::int64_t>());
-  if (!fits) throw Json::type_error::create(302, "must be a whole number of its range, but is " + (value.is_number() ? value.dump() : value.type_name()), &value);
+  const bool fits = value.is_number_unsigned()
+                        ? std::in_range<T>(value.get<std::uint64_t>())
+                        : value.is_number_integer() && std::in_range<T>(value.get<std::int64_t>());
+  if (!fits)
+    throw Json::type_error::create(
+        302, "must be a whole number of its range, but is " + (value.is_number() ? value.dump() : value.type_name()),
+        &value);
   return value.get<T>();
 }
 

@@ -17,7 +17,8 @@ using namespace grainlaw::fuzz;
 const Reader& chosen() {
   static const Reader reader = [] {
     const char *name = std::getenv("GRAINLAW_READER"), *scene = std::getenv("GRAINLAW_SCENE");
-    if (name == nullptr || scene == nullptr) throw std::invalid_argument("GRAINLAW_READER and GRAINLAW_SCENE are not set");
+    if (name == nullptr || scene == nullptr)
+      throw std::invalid_argument("GRAINLAW_READER and GRAINLAW_SCENE are not set");
     for (const Reader& each : readers(scene)) {
       if (each.name == name) return each;
     }
@@ -47,7 +48,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   return 0;
 }
 
-extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned seed) {
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
   Chance chance(seed + 1);
   const ByteMutation bytes = [&](std::string& text) {
     std::string room = text.substr(0, max_size);

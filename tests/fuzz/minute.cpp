@@ -17,8 +17,8 @@ using namespace grainlaw::fuzz;
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLongestCall = 5;            // [s]
-constexpr long kMostMemory = 1024 * 1024;     // [kB]
+constexpr double kLongestCall = 5;         // [s]
+constexpr long kMostMemory = 1024 * 1024;  // [kB]
 constexpr std::size_t kMostKept = 300, kMostBytes = 20000;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -43,7 +43,8 @@ std::pair<long, long> run(const Reader& reader, std::vector<std::string> corpus,
     }
     long calls = 0, accepted = 0;
     for (const Clock::time_point start = Clock::now(); seconds_since(start) < seconds; ++calls) {
-      bytes = mutated(corpus[chance() % corpus.size()], reader.shape, chance, [&](std::string& text) { mutate_bytes(text, chance); });
+      bytes = mutated(corpus[chance() % corpus.size()], reader.shape, chance,
+                      [&](std::string& text) { mutate_bytes(text, chance); });
       if (!call()) continue;
       ++accepted;
       if (corpus.size() < kMostKept && bytes.size() < kMostBytes) corpus.push_back(bytes);
@@ -62,10 +63,13 @@ int main(int argc, char** argv) try {
   const fs::path scene = fs::absolute(argv[1]);
   const std::vector<std::string> wanted(argv + 3, argv + argc);
   std::vector<Reader> all = readers(scene);
-  std::erase_if(all, [&](const Reader& reader) { return !wanted.empty() && std::ranges::count(wanted, reader.name) == 0; });
+  std::erase_if(all,
+                [&](const Reader& reader) { return !wanted.empty() && std::ranges::count(wanted, reader.name) == 0; });
   for (const Reader& reader : all) {
-    const auto [calls, accepted] = run(reader, seeds(reader, scene), std::atof(argv[2]) / static_cast<double>(all.size()));
-    fmt::print("{:<14} {:>8} calls, {:>5.1f} % accepted\n", reader.name, calls, 100.0 * static_cast<double>(accepted) / static_cast<double>(calls));
+    const auto [calls, accepted] =
+        run(reader, seeds(reader, scene), std::atof(argv[2]) / static_cast<double>(all.size()));
+    fmt::print("{:<14} {:>8} calls, {:>5.1f} % accepted\n", reader.name, calls,
+               100.0 * static_cast<double>(accepted) / static_cast<double>(calls));
     std::fflush(stdout);
   }
   return 0;

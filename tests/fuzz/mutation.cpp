@@ -19,14 +19,47 @@ auto& any_of(List& list, Chance& chance) {
   return list[below(std::size(list), chance)];
 }
 
-constexpr std::array kNumbers{0.0,    -0.0,   1.0,    -1.0,    2.0,       0.5,         0.72,  1e-9,    1e9,
-                              1e18,   1e19,   -1e19,  1e150,   -1e300,    1e308,       5e-324, 2.2e-308, 0.9,
-                              1e-150, 1001.0, 2147483648.0, 9007199254740993.0, 18446744073709551615.0};
+constexpr std::array kNumbers{0.0,
+                              -0.0,
+                              1.0,
+                              -1.0,
+                              2.0,
+                              0.5,
+                              0.72,
+                              1e-9,
+                              1e9,
+                              1e18,
+                              1e19,
+                              -1e19,
+                              1e150,
+                              -1e300,
+                              1e308,
+                              5e-324,
+                              2.2e-308,
+                              0.9,
+                              1e-150,
+                              1001.0,
+                              2147483648.0,
+                              9007199254740993.0,
+                              18446744073709551615.0};
 
 Json any_value(Chance& chance) {
-  static const std::array<Json, 16> kValues{
-      nullptr, true, false, "", "x", "../x", "all", "ISO", "a\nb", "\u009b\u202e", std::string(300, 'n'), Json::array(),
-      Json::object(), std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::uint64_t>::max(), -1};
+  static const std::array<Json, 16> kValues{nullptr,
+                                            true,
+                                            false,
+                                            "",
+                                            "x",
+                                            "../x",
+                                            "all",
+                                            "ISO",
+                                            "a\nb",
+                                            "\u009b\u202e",
+                                            std::string(300, 'n'),
+                                            Json::array(),
+                                            Json::object(),
+                                            std::numeric_limits<std::int64_t>::min(),
+                                            std::numeric_limits<std::uint64_t>::max(),
+                                            -1};
   return below(2, chance) == 0 ? any_of(kValues, chance) : Json(any_of(kNumbers, chance));
 }
 
@@ -40,8 +73,14 @@ void collect(Json& node, std::vector<Json*>& nodes) {
 
 void change_number(Json& node, Chance& chance) {
   const double value = node.get<double>();
-  const std::array<double, 8> others{-value,     value * 10,   value / 10, value + 1,
-                                     value - 1, value * 1e6, std::nextafter(value, 1e300), any_of(kNumbers, chance)};
+  const std::array<double, 8> others{-value,
+                                     value * 10,
+                                     value / 10,
+                                     value + 1,
+                                     value - 1,
+                                     value * 1e6,
+                                     std::nextafter(value, 1e300),
+                                     any_of(kNumbers, chance)};
   if (const double other = any_of(others, chance); std::isfinite(other)) node = other;
   if (below(2, chance) == 0 && std::abs(node.get<double>()) < 1e15) node = node.get<std::int64_t>();
 }
@@ -103,13 +142,14 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 std::string joined(const std::vector<std::string>& parts, char separator) {
   std::string text;
-  for (const std::string& part : parts) text.append(&part == &parts.front() ? "" : std::string(1, separator)).append(part);
+  for (const std::string& part : parts)
+    text.append(&part == &parts.front() ? "" : std::string(1, separator)).append(part);
   return text;
 }
 
 void change_field(std::string& field, Chance& chance) {
-  static const std::array<std::string, 12> kFields{"",    "nan", "inf",  "-0", "1e999",      "0x1p3", "\"1\"",
-                                                   " 1 ", "1,5", "1\r", "+1", std::string(2000, '9')};
+  static const std::array<std::string, 12> kFields{"",      "nan", "inf", "-0",  "1e999", "0x1p3",
+                                                   "\"1\"", " 1 ", "1,5", "1\r", "+1",    std::string(2000, '9')};
   const auto digit = field.find_first_of("123456789");
   if (below(4, chance) == 0)
     field = any_of(kFields, chance);
@@ -159,13 +199,15 @@ bool mutate_sealed(std::string& text, Chance& chance) {
   constexpr std::size_t kLength = 12, kPrefix = 16;
   if (text.size() < kPrefix) return false;
   std::size_t length = 0;
-  for (std::size_t i = 0; i < 4; ++i) length |= static_cast<std::size_t>(static_cast<unsigned char>(text[kLength + i])) << (8 * i);
+  for (std::size_t i = 0; i < 4; ++i)
+    length |= static_cast<std::size_t>(static_cast<unsigned char>(text[kLength + i])) << (8 * i);
   if (length > text.size() - kPrefix) return false;
   const std::size_t begin = kPrefix + length, words = (text.size() - begin) / 8;
   if (words > 0 && below(2, chance) == 0) {
     const std::size_t at = begin + 8 * below(words, chance);
     const std::array<std::uint64_t, 6> whole{0, 1, 2, 1u << 31, std::uint64_t{1} << 63, ~std::uint64_t{0}};
-    const std::uint64_t bits = below(2, chance) == 0 ? any_of(whole, chance) : std::bit_cast<std::uint64_t>(any_of(kNumbers, chance));
+    const std::uint64_t bits =
+        below(2, chance) == 0 ? any_of(whole, chance) : std::bit_cast<std::uint64_t>(any_of(kNumbers, chance));
     for (std::size_t i = 0; i < 8; ++i) text[at + i] = static_cast<char>(bits >> (8 * i) & 0xff);
     return true;
   }
@@ -179,7 +221,8 @@ bool mutate_sealed(std::string& text, Chance& chance) {
 }  // namespace
 
 void mutate_bytes(std::string& text, Chance& chance) {
-  static const std::array<std::string, 10> kPieces{"{", "[", "\"", "\\ud800", "\xff", std::string(1, '\0'), "1e999", "//", ",", "\n"};
+  static const std::array<std::string, 10> kPieces{"{",     "[",  "\"", "\\ud800", "\xff", std::string(1, '\0'),
+                                                   "1e999", "//", ",",  "\n"};
   const std::size_t at = below(text.size() + 1, chance), length = std::min(below(16, chance), text.size() - at);
   switch (below(4, chance)) {
     case 0:

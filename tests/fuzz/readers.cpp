@@ -27,7 +27,7 @@ void put(const std::filesystem::path& file, std::string_view bytes) {
 
 void check_message(const std::string& message, const std::string& name) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  const char* fault = message.find(name) == std::string::npos                    ? "does not name the file"
+  const char* fault = message.find(name) == std::string::npos                   ? "does not name the file"
                       : std::any_of(message.begin(), message.end(), is_control) ? "is not one line of text"
                       : message.size() > kLongestMessage                        ? "is too long"
                                                                                 : nullptr;
@@ -81,7 +81,8 @@ void check_round_trip(const std::function<std::string()>& write,
     if (text == back) return;
     const auto at = std::mismatch(text.begin(), text.end(), back.begin(), back.end()).first - text.begin();
     const auto from = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at - 40));
-    throw Finding(fmt::format("reads back otherwise: {} for {}", one_line(back.substr(std::min(from, back.size())), 120),
+    throw Finding(fmt::format("reads back otherwise: {} for {}",
+                              one_line(back.substr(std::min(from, back.size())), 120),
                               one_line(text.substr(from), 120)));
   } catch (const Error& error) {
     throw Finding(fmt::format("what was accepted cannot be written and read: {}", error.what()));

@@ -35,7 +35,8 @@ void make_checkpoint(const fs::path& scene) {
   checkpoint.state = dem::read_state(scene / "state/end.state");
   checkpoint.segment_H = checkpoint.state.packing.H;
   checkpoint.rows = {Observation{}, Observation{}};
-  for (Observation& row : checkpoint.rows) row.fabric.tensor.setIdentity(), row.stress.tensor.setIdentity(), row.strain.tensor.setZero();
+  for (Observation& row : checkpoint.rows)
+    row.fabric.tensor.setIdentity(), row.stress.tensor.setIdentity(), row.strain.tensor.setZero();
   dem::write_checkpoint(scene / "checkpoint/checkpoint", checkpoint);
 }
 

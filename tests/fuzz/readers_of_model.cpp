@@ -21,10 +21,9 @@ namespace fs = std::filesystem;
 
 Json parsed(std::string_view bytes, JsonSource source) {
   const Json document = parse_json(bytes, "bytes", source);
-  check_round_trip([&] { return json_text(OrderedJson(document)); },
-                   [](const std::string& text) {
-                     return json_text(OrderedJson(parse_json(text, "bytes", JsonSource::own)));
-                   });
+  check_round_trip(
+      [&] { return json_text(OrderedJson(document)); },
+      [](const std::string& text) { return json_text(OrderedJson(parse_json(text, "bytes", JsonSource::own))); });
   return document;
 }
 
@@ -39,17 +38,19 @@ void read_table(const fs::path& file) {
 }
 
 void check_path_round_trip(const Path& path) {
-  check_round_trip([&] { return json_text(path_to_json(path)); },
-                   [](const std::string& text) {
-                     return json_text(path_to_json(
-                         path_from_json(parse_json(text, "again", JsonSource::own), "again", "", true)));
-                   });
+  check_round_trip(
+      [&] { return json_text(path_to_json(path)); },
+      [](const std::string& text) {
+        return json_text(path_to_json(path_from_json(parse_json(text, "again", JsonSource::own), "again", "", true)));
+      });
 }
 
 }  // namespace
 
 std::vector<Reader> readers_of_model(const fs::path& scene) {
-  const auto read_path_file = [](std::string_view, const fs::path& file) { check_path_round_trip(read_path(file).path); };
+  const auto read_path_file = [](std::string_view, const fs::path& file) {
+    check_path_round_trip(read_path(file).path);
+  };
   // a table by itself: what it is judged by comes from its data set, read once
   const TestRecord record = read_dataset(scene / "dataset").tests.at(0).record;
   return {

@@ -18,7 +18,8 @@ constexpr auto fields_of(std::type_identity<Counted>) {
 }
 
 TEST(WholeNumber, IsTakenWithinItsRangeAlone) {
-  EXPECT_EQ(whole_number<std::uint64_t>(std::numeric_limits<std::uint64_t>::max()), std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(whole_number<std::uint64_t>(std::numeric_limits<std::uint64_t>::max()),
+            std::numeric_limits<std::uint64_t>::max());
   EXPECT_EQ(whole_number<int>(Json(std::numeric_limits<int>::min())), std::numeric_limits<int>::min());
   for (const Json& value : {Json(-1), Json(1e300), Json(2.0), Json("2"), Json(nullptr), Json(true), Json::array({1})})
     EXPECT_THROW(whole_number<std::uint64_t>(value), Json::exception) << value;
