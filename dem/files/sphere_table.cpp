@@ -145,14 +145,14 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
     p.vz.push_back(value[vz]);
   }
   if (p.size() == 0) throw lines.refusal("", "no spheres follow the header");
+  p.mass.resize(p.size());
   try {
     check_sizes(p);
+    set_masses(p, material);
+    check(p);
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
   }
-  p.mass.resize(p.size());
-  set_masses(p, material);
-  check(p);
   return state;
 }
 

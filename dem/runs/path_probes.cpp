@@ -11,6 +11,7 @@
 #include "model/files/column.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/output.hpp"
+#include "model/files/whole_number.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -40,7 +41,7 @@ bool PathProbes::take_up() {
   try {
     const OrderedJson progress(read_json(folder_ / kProgress, JsonSource::own));
     if (progress.at("sha256") != digest_of(progress)) return false;
-    done_ = progress.at("places").get<std::size_t>();
+    done_ = whole_number<std::size_t>(Json(progress.at("places")));
     lines_ = progress.at("rows").get<std::vector<std::string>>();
     warnings_ = progress.at("warnings").get<std::vector<std::string>>();
     return true;

@@ -184,6 +184,15 @@ TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
               predict::read_prediction_series(put("q.csv", "segment\n0\n"));
             }).find("misses the column 'strain_xx'"),
             std::string::npos);
+  for (const char* segment : {"2147483648", "1e300", "0.5"}) {
+    std::string text = content(folder_ / "p.csv");
+    ASSERT_TRUE(text.starts_with("segment,"));
+    const std::size_t at = text.find('\n') + 1;
+    text.replace(at, text.find(',', at) - at, segment);
+    EXPECT_NE(refusal([&] { predict::read_prediction_series(put("q.csv", text)); }).find("row 1, column 'segment'"),
+              std::string::npos)
+        << segment;
+  }
 }
 
 }  // namespace
