@@ -10,8 +10,8 @@ rate=276 frames=50 dumps=1  # 1/s, rows of a segment, 1: spheres and contacts wi
 
 case $mu in
 0) nu_start=0.64 nu_end=0.66 shear="0.68 0.71 0.75 0.80" triaxial="0.71 0.80" compressed="0.71 0.75" uniaxial="0.70 0.73" ;;
-0.1) nu_start=0.60 nu_end=0.63 shear="0.66 0.69 0.73 0.79" triaxial="0.69 0.79" compressed="0.69 0.73" uniaxial="0.68 0.71" ;;
-0.5) nu_start=0.55 nu_end=0.575 shear="0.62 0.66 0.71 0.78" triaxial="0.66 0.78" compressed="0.66 0.71" uniaxial="0.64 0.68" ;;
+0.1) triaxial="" nu_start=0.60 nu_end=0.63 shear="0.66 0.69 0.73 0.79" compressed="0.69 0.73" uniaxial="0.68 0.71" ;;
+0.5) triaxial="" nu_start=0.55 nu_end=0.575 shear="0.62 0.66 0.71 0.78" compressed="0.66 0.71" uniaxial="0.64 0.68" ;;
 *) echo "run.sh: MU must be 0, 0.1 or 0.5" >&2 && exit 2 ;;
 esac
 keep="$(printf '%s\n' $shear $uniaxial | sort -ru) 0"
