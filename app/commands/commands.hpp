@@ -20,6 +20,7 @@ struct Command {
 };
 
 Task declare_simulate(CLI::App& command);
+Task declare_import(CLI::App& command);
 Task declare_calibrate(CLI::App& command);
 Task declare_predict(CLI::App& command);
 Task declare_report(CLI::App& command);

@@ -124,6 +124,17 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
   return data;
 }
 
+bool tells_fabric(const TestRecord& test) {
+  return std::ranges::any_of(test.rows, [](const Observation& row) { return row.fabric.tensor.allFinite(); });
+}
+
+bool counts_contacts(const TestRecord& test) {
+  const auto any = [&](double Observation::*value) {
+    return std::ranges::any_of(test.rows, [value](const Observation& row) { return !std::isnan(row.*value); });
+  };
+  return any(&Observation::C_star) && any(&Observation::rattler_fraction);
+}
+
 int packing_of(const DataSet& data, const TestRecord& test) {
   std::set<std::uint64_t> seeds;
   for (const TestRecord* used : data.all_used()) seeds.insert(used->packing.seed);

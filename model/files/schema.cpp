@@ -199,7 +199,8 @@ struct Schemas {
                                       {Schema::study, "study.schema.json"},
                                       {Schema::study_settings, "study_settings.schema.json"},
                                       {Schema::plan, "plan.schema.json"},
-                                      {Schema::prior, "prior.schema.json"}}) {
+                                      {Schema::prior, "prior.schema.json"},
+                                      {Schema::mapping, "import.schema.json"}}) {
       whole[which] = load(file);
       for_library[which] = without_unique_items(whole[which]);
     }
