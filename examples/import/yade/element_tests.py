@@ -1,11 +1,11 @@
 # A packing of frictionless spheres and element tests on it by YADE (Debian's package yade):
 #   OUT=folder N=500 SEED=1 yade -n -x element_tests.py
 # Radii are uniform between 0.5 and 1.5 mm; contacts have the stiffness 1e8 kg/s^2 and the viscosity 1 kg/s, whatever the
-# radii (Law2_ScGeom_ViscElPhys_Basic with kn and cn given; of two springs in series, hence twice that). Isotropic loading to nu = 0.82, unloading to 0.66 (the test
-# ISO) with states kept on the way, and shear at constant volume from them (D2-0.70, D2-0.75).
+# radii: Law2_ScGeom_ViscElPhys_Basic with kn and cn given, of two springs in series, hence twice that. Isotropic loading to
+# nu = 0.82, unloading to 0.66 (the test ISO) with states kept on the way, shear at constant volume from them (D2-0.70, D2-0.75).
 # OUT/NAME.csv has a row an instant: cell and stress (YADE's sign: tension positive). OUT/NAME/NNN.spheres.txt are the
-# spheres of row NNN as export.text writes them (x y z r, six digits), NNN.contacts.txt the contacts: numbers of two spheres, from 0 in
-# the order of that file, force on the first, stiffness and overlap.
+# spheres of row NNN as export.text writes them (x y z r, six digits), NNN.contacts.txt the contacts: numbers of two spheres,
+# from 0 in the order of that file, force on the first, stiffness and overlap.
 import math
 import os
 
