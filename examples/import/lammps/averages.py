@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""averages.py FOLDER OUT [DIGITS]: a table of each test in FOLDER (run.sh's muMU) from its spheres and contacts.
+"""averages.py FOLDER OUT [DIGITS [EVERY]]: a table of each test in FOLDER (run.sh's muMU) from its spheres and contacts.
 
 What anybody would sum up with numpy, by the definitions alone and without grainlaw: box, volume fraction, stress from the
 contact forces (compression positive), fabric (1/V) sum_p V_p sum_c n n, coordination of the spheres with four contacts or
-more, the fraction of the others, mean overlap over mean radius. One row an instant.
+more, the fraction of the others, mean overlap over mean radius. One row an instant, or for every second or third.
 """
+import itertools
 import json
 import pathlib
 import sys
@@ -51,7 +52,7 @@ def row(time, box, spheres, contacts):
             1 - carries.mean(), overlap]
 
 
-def main(folder, out, digits):
+def main(folder, out, digits=6, every=1):
     for spheres in sorted(folder.glob("packing-*/*.spheres.dump")):
         name = spheres.name.removesuffix(".spheres.dump")
         if not (spheres.parent / f"{name}.done").exists():
@@ -62,7 +63,8 @@ def main(folder, out, digits):
         to.mkdir(parents=True, exist_ok=True)
         with open(to / f"{name}.csv", "w") as table:
             table.write(",".join(HEADER) + "\n")
-            for time, (box, particles), (_, pairs) in zip(times, frames(spheres), frames(contacts)):
+            instants = zip(times, frames(spheres), frames(contacts))
+            for time, (box, particles), (_, pairs) in itertools.islice(instants, 0, None, every):
                 values = row(float(time), box, particles, pairs)
                 table.write(",".join("" if np.isnan(v) else f"{v:.{digits}g}" for v in values) + "\n")
         packing = {"particles": len(particles), "size_width": 3, "mean_radius": float(f"{particles[:, 4].mean():.10g}")}
@@ -70,6 +72,6 @@ def main(folder, out, digits):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (3, 4):
+    if not 3 <= len(sys.argv) <= 5:
         sys.exit(__doc__.splitlines()[0])
-    main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) == 4 else 6)
+    main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), *map(int, sys.argv[3:]))
