@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # examples/import/friction.sh OUT [DATA]: does the form of the law hold for spheres with friction?
 # Imports the tests of LAMMPS in DATA (default: those shipped here), mu = 0, 0.1 and 0.5, calibrates the law to each, predicts
-# uniaxial compression and prints three tables of Markdown: misfits, parameters, errors of the predictions.
-# GRAINLAW names the program (default: that of build/release). Needs jq. docs/friction.md says what they mean.
+# uniaxial compression and prints tables of Markdown: misfits, parameters, errors of the predictions, and Eq. (11) with C0 free.
+# GRAINLAW names the program (default: that of build/release). Needs jq and scipy. docs/friction.md says what they mean.
 set -euo pipefail
 (($# >= 1)) || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
 
@@ -54,11 +54,11 @@ of_all calibration.json | jq -r '
 echo
 echo "| parameter | mu = 0 | 0.1 | 0.5 |"
 echo "|---|---|---|---|"
-of_all calibration.json | jq -r '
+of_all parameters.json | jq -r '
   def digits: if . == null then "–" elif . == 0 then "0" else (. as $x | ($x | fabs | log10 | floor) as $e | ($x / pow(10; $e - 3) | round) * pow(10; $e - 3) * 1e9 | round / 1e9 | tostring) end;
   def shown: if . == null then "–" elif .status != "fitted" and .status != "tied" then .status
              else "\(.value | digits) ± \(.standard_error | if . == null then "?" else digits end)" end;
-  [.[] | [.stages[].estimates] | add] as $laws
+  [.[].parameters] as $laws
   | ($laws | map(keys_unsorted) | add | unique_by(.) | map(select(startswith("steady") | not)))[] as $name
   | "| `\($name)` | " + ([$laws[] | .[$name] | shown] | join(" | ")) + " |"'
 
@@ -72,3 +72,8 @@ done | jq -rs '
     | if length == 0 then "–" else (add / length * 1000 | round / 10 | tostring + " %") end;
   . as $all | ("reduced", "evolution", "memory") as $rung
   | "| uniaxial compression | \($rung) | " + ([("P_star", "s_par", "F_par") as $q | $all[] | error($rung; $q)] | join(" | ")) + " |"'
+
+echo
+echo "| friction | C0 | nu_c | misfit | C0 free | nu_c | misfit |"
+echo "|---|---|---|---|---|---|---|"
+for mu in $frictions; do echo "| $mu $(/usr/bin/python3 "$here/isostatic.py" "${iso_from[$mu]}" "$out/mu$mu/dataset")"; done

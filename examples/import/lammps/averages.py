@@ -55,7 +55,7 @@ def row(time, box, spheres, contacts):
 def main(folder, out, digits=6, every=1):
     for spheres in sorted(folder.glob("packing-*/*.spheres.dump")):
         name = spheres.name.removesuffix(".spheres.dump")
-        if not (spheres.parent / f"{name}.done").exists():
+        if (spheres.parent / f"{name}.log").exists():  # not finished
             continue
         times = [line.split(",")[0] for line in (spheres.parent / f"{name}.csv").read_text().splitlines()[1:]]
         contacts = spheres.parent / f"{name}.contacts.dump"

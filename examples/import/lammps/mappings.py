@@ -19,7 +19,7 @@ def main(folder, friction):
     particles = any(folder.glob("packing-*/*.spheres.dump"))
     tests, packings = {}, {}
     for table in sorted(folder.glob("packing-*/*.csv")):
-        if particles and not (table.parent / f"{table.stem}.done").exists():
+        if (table.parent / f"{table.stem}.log").exists():  # not finished
             continue
         seed = table.parent.name.removeprefix("packing-")
         packings[seed] = {"seed": int(seed), "stiffness": STIFFNESS}
