@@ -33,8 +33,8 @@ averages() {
   compared averages.lammps.fabric_beside_numpy "<=1e-10" fabric "$sample/lammps/D2.csv" "$sample/numpy/packing-9/D2.csv"
   compared averages.lammps.contacts_beside_numpy "<=1e-10" contacts "$sample/lammps/D2.csv" "$sample/numpy/packing-9/D2.csv"
   "$bin/grainlaw" import $yade/sample/mapping.json -o "$sample/yade" --quiet >/dev/null
-  # export.text writes six digits of a position, so a branch vector is off by some 1e-5 of its length
-  compared averages.yade.stress_beside_yade "<=3e-5" stress "$sample/yade/D2.csv" $yade/sample/D2.csv
+  # export.text writes six digits of a position; at rest the forces on a sphere cancel, and with them what that does to the stress
+  compared averages.yade.stress_beside_yade "<=1e-8" stress "$sample/yade/D2.csv" $yade/sample/D2.csv
 }
 
 # LAMMPS's tests to a law, beside the law of our engine from the same tests, and uniaxial compression that no fit saw.
