@@ -14,16 +14,17 @@ inline constexpr const char* kFramesFile = "frames.csv";
 
 /// One line of frames.csv.
 struct FramePlace {
-  int frame = 0;       ///< number in the file's name
-  double time = 0;     ///< since the start of the test [s]
-  int segment = 0;     ///< index of the path's segment
-  double e = 0;        ///< path parameter in it [-]
+  int frame = 0;                        ///< number in the file's name
+  double time = 0;                      ///< since the start of the test [s]
+  int segment = 0;                      ///< index of the path's segment
+  double e = 0;                         ///< path parameter in it [-]
   double L_xx = 0, L_yy = 0, L_zz = 0;  ///< velocity gradient of the cell, of which viscous forces know [1/s]
 };
 constexpr auto fields_of(std::type_identity<FramePlace>) {
   using F = FramePlace;
-  return std::tuple{Field{&F::frame, "frame"}, Field{&F::time, "time", "s"}, Field{&F::segment, "segment"}, Field{&F::e, "e"},
-                    Field{&F::L_xx, "L_xx", "1/s"}, Field{&F::L_yy, "L_yy", "1/s"}, Field{&F::L_zz, "L_zz", "1/s"}};
+  return std::tuple{
+      Field{&F::frame, "frame"},      Field{&F::time, "time", "s"},   Field{&F::segment, "segment"}, Field{&F::e, "e"},
+      Field{&F::L_xx, "L_xx", "1/s"}, Field{&F::L_yy, "L_yy", "1/s"}, Field{&F::L_zz, "L_zz", "1/s"}};
 }
 static_assert(tells_every_member<FramePlace>());
 

@@ -162,10 +162,10 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   State start;
   if (!checkpoint) start = start_state(store, test, control);
   if (!checkpoint && frames) frames->keep_start(start, options.drive);
-  const ElementTest done = checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control,
-                                                              on_step, checkpoints.checkpointing())
-                                      : run_element_test(start, segments, options, control,
-                                                         on_step, checkpoints.checkpointing());
+  const ElementTest done =
+      checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
+                                         checkpoints.checkpointing())
+                 : run_element_test(start, segments, options, control, on_step, checkpoints.checkpointing());
   write_series(folder / "series.csv", done.rows);
   std::vector<std::string> warnings = done.warnings;
   if (probes) {
