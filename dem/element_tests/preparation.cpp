@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "dem/element_tests/stepper.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
