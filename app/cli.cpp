@@ -69,6 +69,7 @@ constexpr std::array kCommands{
             Kind::simulates},
     Command{"predict", "the calibrated law along a strain path, and DEM of the same path", declare_predict,
             Kind::simulates},
+    Command{"export", "states, runs and data sets as files of other programs", declare_export, Kind::computes},
     Command{"report", "one HTML page about a calibration and its predictions", declare_report, Kind::computes}};
 
 constexpr std::array kStudies{

@@ -128,6 +128,11 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
     const std::uint64_t seed = test.record.packing.seed;
     for (const Rung model : law.rungs) {
       for (const Initial initial : initials_of(input)) {
+        if (initial == Initial::measured && model != Rung::reduced && !test.record.rows.front().fabric.tensor.allFinite()) {
+          content.failures.push_back({model, initial, seed,
+                                      "the run tells no fabric, which this rung starts from; --initial law does without it"});
+          continue;
+        }
         const auto start = initial == Initial::law ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
                                                    : measured_start(test.record);
         const bool added = add_curve(

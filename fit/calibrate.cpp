@@ -187,6 +187,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
   calibration.law.range = range_of(trajectories, data);
   calibration.law.converged = all_converged(calibration);
+  forget_unknown_fabric(calibration.law);
   return calibration;
 }
 

@@ -119,7 +119,7 @@ class ElementRun {
 
   /// What is not the run itself: the observer, progress, and saving.
   void look() {
-    if (on_step_) on_step_(stepper_->simulation(), at_.segment, stepper_->place());
+    if (on_step_) on_step_(*stepper_, at_.segment, stepper_->place());
     watch_.tick(stepper_->fraction_done(), static_cast<double>(at_.steps) * spheres_);
     if (checkpointing_.save && seconds_since(saved_) >= checkpointing_.interval) save();
   }

@@ -15,6 +15,8 @@
 
 namespace grainlaw::dem {
 
+class Stepper;
+
 struct ElementTestOptions {
   EngineOptions engine;
   DriveOptions drive;
@@ -36,8 +38,8 @@ struct ElementTest {
                                       ///< stopped short; for the log
 };
 
-/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state. After a continuation it sees the checkpoint's step once more.
-using StepObserver = std::function<void(Simulation&, int segment, double e)>;
+/// Sees the packing, by its stepper (dem/element_tests/stepper.hpp), after each step with the path's segment index and parameter e, e.g. to keep a state. After a continuation it sees the checkpoint's step once more.
+using StepObserver = std::function<void(Stepper&, int segment, double e)>;
 
 /// Runs `segments` (resolve() of the path at the state's own volume fraction) from `start`; time, step and ledger begin
 /// at zero. A row is taken at the first step that reaches its e; `strain` is that of the step. Throws InvalidInput for

@@ -48,6 +48,7 @@ void take_titles(const Json& json, const char* key, std::array<std::string, 3>& 
 
 ContactRequest contact_request(const Json& json, const fs::path& folder, const std::string& where) {
   ContactRequest contacts;
+  if (!json.contains("files")) throw InvalidInput(where + ": misses the key 'files'; name those with the contacts");
   contacts.format = value_of<ParticleFormat>(json.value("format", "lammps-dump"), "format");
   contacts.files = files_of(json["files"], folder, where);
   contacts.first = json.value("first", contacts.first);
@@ -147,6 +148,9 @@ std::unique_ptr<ForeignReader> reader_of(ParticleFormat format, const fs::path& 
 ParticleRequest particle_request(const Json& json, const fs::path& folder, const std::string& where) {
   ParticleRequest request;
   request.where = where;
+  for (const char* key : {"format", "files"}) {
+    if (!json.contains(key)) throw InvalidInput(fmt::format("{}: misses the key '{}'", where, key));
+  }
   request.format = value_of<ParticleFormat>(json["format"].get<std::string>(), "format");
   request.files = files_of(json["files"], folder, where);
   if (json.contains("units")) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/element_tests/stepper.hpp"
 #include "dem/runs/run_store.hpp"
 #include "dem/statics/elastic_moduli.hpp"
 #include "model/files/column.hpp"
@@ -57,11 +58,11 @@ double PathProbes::length_before(std::size_t segment) const {
 }
 
 StepObserver PathProbes::observer() {
-  return [this](Simulation& sim, int segment, double e) {
+  return [this](Stepper& stepper, int segment, double e) {
     const auto index = static_cast<std::size_t>(segment);
     const double length = length_before(index) + length_rate(segments_[index]) * e;
     if (length < request_.every * static_cast<double>(done_) - kRounding) return;
-    probe(sim.state(), segment, e);
+    probe(stepper.simulation().state(), segment, e);
     save();
   };
 }

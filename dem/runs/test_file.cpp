@@ -63,6 +63,9 @@ Start start_from(const Json& document, const std::string& name) {
   if (document.contains("probes") && start == Start::preparation) {
     throw InvalidInput(fmt::format("{}: probes: belong to a test; give initial, spheres or state", name));
   }
+  if (document.contains("frames") && start == Start::preparation) {
+    throw InvalidInput(fmt::format("{}: frames: belong to a test; give initial, spheres or state", name));
+  }
   if (start == Start::spheres && !document.contains("cell")) {
     throw InvalidInput(fmt::format("{}: misses the key 'cell'; give three rows of three numbers [m]", name));
   }
@@ -98,6 +101,7 @@ TestFile read_test(const std::filesystem::path& file) {
   test.rows = preparation.rows;
   preparation.packing.seed = document.value("seed", preparation.packing.seed);
   test.relax = document.value("relax", false);
+  test.frames = document.value("frames", 0);
   if (document.contains("probes")) read_given_fields(document["probes"], test.probes.emplace());
   const auto keep = [&](const Json& kept) {
     (branch_from_json(kept) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
