@@ -184,6 +184,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   calibration.law.covariance = calibration.errors.covariance();
   calibration.size = size_of(tests);
   moderate_errors(options, calibration);
+  tie_errors(calibration.law);
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
   calibration.law.range = range_of(trajectories, data);
   calibration.law.converged = all_converged(calibration);

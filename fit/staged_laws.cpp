@@ -125,6 +125,18 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
         control);
 }
 
+void tie_errors(CalibratedLaw& law) {
+  for (const std::string prefix : {"", "steady_"}) {
+    const std::size_t from = parameter_index(prefix + "pressure.nu_c"), to = parameter_index(prefix + "coordination.nu_c");
+    if (law.estimates[to].status != Status::tied) continue;
+    const auto i = static_cast<Eigen::Index>(from), j = static_cast<Eigen::Index>(to);
+    law.estimates[to].standard_error = law.estimates[from].standard_error;
+    law.estimates[to].degrees_of_freedom = law.estimates[from].degrees_of_freedom;
+    law.covariance.row(j) = law.covariance.row(i);
+    law.covariance.col(j) = law.covariance.col(i);
+  }
+}
+
 bool all_converged(const Calibration& calibration) {
   return std::all_of(calibration.stages.begin(), calibration.stages.end(),
                      [](const Stage& stage) { return stage.converged; });

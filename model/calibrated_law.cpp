@@ -69,6 +69,10 @@ bool has_values(const CalibratedLaw& law, std::string_view group) {
   return true;
 }
 
+bool knows_fabric(const LawParameters<double>& law) {
+  return !std::isnan(law.fabric_max.Q_limit + law.fabric_max.Q_c + law.fabric_rate.Q_limit + law.fabric_rate.Q_c);
+}
+
 void forget_unknown_fabric(CalibratedLaw& law) {
   const auto value = fields(law.parameters);
   for (const std::string_view group : {"fabric_max", "fabric_rate"}) {
@@ -77,7 +81,7 @@ void forget_unknown_fabric(CalibratedLaw& law) {
       if (is_of(parameter_table()[i].name, group)) known = known && (has_value(law, i) || without_exponential(law, i));
     }
     for (std::size_t i = 0; i < kParameterCount && !known; ++i) {
-      if (is_of(parameter_table()[i].name, group) && !has_value(law, i)) *value[i] = std::nan("");
+      if (is_of(parameter_table()[i].name, group)) *value[i] = std::nan("");
     }
   }
 }

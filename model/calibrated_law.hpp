@@ -74,6 +74,9 @@ bool says_nothing(const CalibratedLaw& law, std::size_t parameter);
 /// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
 bool has_values(const CalibratedLaw& law, std::string_view group);
 
+/// Whether the law says anything of the fabric, that is its laws of Eq. (20) have values.
+bool knows_fabric(const LawParameters<double>& law);
+
 /// Makes parameters of the fabric's laws, Eq. (20), that have no value NaN: the reduced rung, which is served without them, then says
 /// nothing of the fabric.
 void forget_unknown_fabric(CalibratedLaw& law);

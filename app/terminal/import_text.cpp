@@ -4,11 +4,34 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "app/terminal/help.hpp"
 #include "model/files/one_line.hpp"
 
 namespace grainlaw::app {
 namespace {
+
+/// What is said of tests, once for those of which the same is said.
+class Said {
+ public:
+  void add(const std::string& test, const std::string& text) {
+    auto known = std::ranges::find(all_, text, &std::pair<std::string, std::vector<std::string>>::first);
+    if (known == all_.end()) known = all_.insert(all_.end(), {text, {}});
+    known->second.push_back(test);
+  }
+  std::string text() const {
+    std::string text;
+    for (const auto& [said, tests] : all_) {
+      for (const std::string& line : wrapped(fmt::format("{}", fmt::join(tests, ", ")), 80)) text += line + "\n";
+      text += said;
+    }
+    return text;
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::vector<std::string>>> all_;
+};
 
 std::string table_of(const chain::ForeignRows& foreign) {
   std::size_t column = 6, unit = 4, sign = 8;
@@ -31,25 +54,19 @@ std::string table_of(const chain::ForeignRows& foreign) {
 }  // namespace
 
 std::string columns_text(const std::vector<chain::ForeignTest>& tests) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> tables;  // and the tests that have them
-  for (const chain::ForeignTest& test : tests) {
-    const std::string table = table_of(test.foreign);
-    auto known = std::ranges::find_if(tables, [&](const auto& t) { return t.first == table; });
-    if (known == tables.end()) known = tables.insert(tables.end(), {table, {}});
-    known->second.push_back(test.mapping.name);
-  }
-  std::string text;
-  for (const auto& [table, names] : tables) text += fmt::format("{}\n{}", fmt::join(names, ", "), table);
-  return text;
+  Said said;
+  for (const chain::ForeignTest& test : tests) said.add(test.mapping.name, table_of(test.foreign));
+  return said.text();
 }
 
 std::string paths_text(const std::vector<chain::ImportedTest>& tests) {
-  std::string text;
+  Said said;
   for (const chain::ImportedTest& test : tests) {
-    text += fmt::format("{}: {} rows\n", test.record.name, test.record.rows.size());
+    std::string text;
     for (const std::string& line : test.says) text += fmt::format("  {}\n", line);
+    said.add(test.record.name, text);
   }
-  return text;
+  return said.text();
 }
 
 std::string written_text(const Dataset& dataset, const std::filesystem::path& output) {

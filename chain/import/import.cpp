@@ -62,6 +62,18 @@ std::string extra_text(const ExtraColumns& extra) {
   return text;
 }
 
+/// Refuses a folder in which what is imported would be overwritten.
+void check_output(const std::vector<ForeignTest>& foreign, const fs::path& output) {
+  std::error_code absent;
+  for (const ForeignTest& test : foreign) {
+    if (!test.mapping.series) continue;
+    const fs::path file = test.mapping.series->file, folder = file.has_parent_path() ? file.parent_path() : ".";
+    if (fs::equivalent(folder, output, absent))
+      throw InvalidInput(fmt::format("{}: holds the tables that are imported, {} among them; give another folder with -o",
+                                     output.string(), file.filename().string()));
+  }
+}
+
 /// A series that an earlier import left under the name must not stay beside an index that does not know it.
 void remove_extra(const fs::path& output, const std::string& name) { fs::remove(output / (name + ".extra.csv")); }
 
@@ -97,9 +109,9 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
         foreign.place(moved.row, "strain"), moved.farthest, path_text(record.path), test.mapping.path_tolerance));
   complete(record.rows, record.path, record.packing);
   check_series(record.rows, record.path, record.packing, foreign.place);
-  result.says = {
-      fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
-      fmt::format("rows moved onto it by {:.2g} at most, tolerance {:g}", moved.farthest, test.mapping.path_tolerance)};
+  result.says = {fmt::format("{} rows", record.rows.size()), fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
+                 fmt::format("rows moved onto it by {:.2g} at most, tolerance {:g}", moved.farthest,
+                             test.mapping.path_tolerance)};
   result.provenance = foreign.provenance;
   result.provenance["path"] = {{"given", !test.mapping.segments.empty()},
                                {"tolerance", test.mapping.path_tolerance},
@@ -110,6 +122,7 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
 
 Dataset write_imported(const Mapping& mapping, const std::vector<ForeignTest>& foreign,
                        const std::vector<ImportedTest>& tests, const fs::path& output, const Execution& execution) {
+  check_output(foreign, output);
   make_output_folder(output);
   fs::remove(output / "dataset.json");  // written last: until then there is no data set
   Dataset dataset;

@@ -30,8 +30,8 @@ TableLayout layout_of(const SeriesMapping& how) {
 
 Sources::Sources(const Mapping& mapping, const TestMapping& test)
     : mapping_(mapping.name),
-      sha256_(sha256_of_file(test.series->file)),
-      table_(std::make_shared<ForeignTable>(read_foreign_table(test.series->file, layout_of(*test.series)))) {
+      table_(std::make_shared<ForeignTable>(read_foreign_table(test.series->file, layout_of(*test.series)))),
+      sha256_(sha256_of_file(test.series->file)) {
   const SeriesMapping& how = *test.series;
   if (how.columns.empty())
     guess();

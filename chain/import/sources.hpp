@@ -60,8 +60,8 @@ class Sources {
   void set_units(const std::map<std::string, std::string>& units, double stress_unit);
 
   std::string mapping_;  // name of its file
-  std::string sha256_;   // of the table
   std::shared_ptr<const ForeignTable> table_;
+  std::string sha256_;  // of its file
   std::map<std::string, Source> sources_;  // by quantity
 };
 

@@ -14,6 +14,7 @@ namespace grainlaw::chain {
 namespace {
 
 constexpr double kSameDirection = 0.05;  // angle up to which a direction passes for a mode that its rows allow, too
+constexpr double kEqual = 1e-24;  // squares of distances that differ by rounding alone
 constexpr std::size_t kMostWork = 200000000;  // rows times segments
 
 using Tensor = Eigen::Matrix3d;
@@ -133,7 +134,7 @@ std::vector<int> segments_of_rows(const std::vector<StraightSegment>& segments, 
       const Place place = nearest(segments[k], rows[i].strain.tensor, 0);
       const double back = i == 0 ? 0 : std::max(0.0, (at_before[k] - place.e) * segments[k].direction.tensor.norm());
       double best = i == 0 ? (k == 0 ? 0 : kNever) : before[k] + back * back;
-      if (i > 0 && k > 0 && before[k - 1] < best) {
+      if (i > 0 && k > 0 && before[k - 1] <= best + kEqual) {
         best = before[k - 1];
         moved[i * K + k] = true;
       }

@@ -118,6 +118,9 @@ void write_dataset_index(const fs::path& folder, Dataset& dataset) {
   for (DatasetTest& test : dataset.tests) {
     test.sha256 = sha256_of_file(folder / (test.record.name + ".csv"));
     OrderedJson object = identity(test);
+    for (const char* key : {"size_width", "particles"}) {  // unknown
+      if (object["packing"][key] == 0) object["packing"].erase(key);
+    }
     object["rows"] = test.record.rows.size();
     if (!test.run.empty()) object["run"] = test.run;
     object["cost"] = fields_to_json(test.cost);

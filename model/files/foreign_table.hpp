@@ -32,7 +32,7 @@ inline constexpr std::size_t kMaxForeignBytes = std::size_t{512} << 20;  ///< la
 /// How a table is laid out, as far as its file does not say it.
 struct TableLayout {
   char delimiter = 0;                   ///< of a text; ' ' any blanks; 0: seen from the first line
-  std::string array;                    ///< of an .npz
+  std::string array = {};               ///< of an .npz
   std::vector<std::string> names = {};  ///< of the columns; empty: a header, or numbers
 };
 
