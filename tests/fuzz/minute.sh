@@ -3,4 +3,4 @@ set -euo pipefail
 scene=$(mktemp -d -p "$([[ -w /dev/shm ]] && echo /dev/shm || echo .)")
 trap 'rm -rf "$scene"' EXIT
 bash "$(dirname "${BASH_SOURCE[0]}")/scene.sh" "$1" "$scene"
-"$2" "$scene" "${GRAINLAW_FUZZ_SECONDS:-40}" || { for f in finding-*; do base64 "$f" | head -40; done; exit 1; }
+"$2" "$scene" "${GRAINLAW_FUZZ_SECONDS:-20}" || { for f in finding-*; do base64 "$f" | head -40; done; exit 1; }

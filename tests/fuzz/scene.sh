@@ -76,8 +76,10 @@ slim "$work/study/study.json" >study/study.json
 slim "$work/prediction/prediction.json" | jq -c 'del(.provenance.command) | .curves |= .[:1]' >prediction/prediction.json
 slim "$work/prediction/comparison.json" >comparison/comparison.json
 cp prediction/prediction.json comparison
+mkdir comparison/dem
+jq -c 'del(.digest, .spec, .provenance, .tests[].sha256)' "$work/prediction/dem/dataset.json" >comparison/dem/dataset.json
+for file in "$work"/prediction/dem/*.csv; do head -4 "$file" >"comparison/dem/$(basename "$file")"; done
 for folder in prediction comparison; do
-  cp -r "$work/prediction/dem" $folder
   head -4 "$work/prediction/reduced-law.csv" | tee $folder/reduced-law.csv >curve/curve.csv
 done
 jq -c '.dem = null' prediction/prediction.json >"$work/alone.json" && mv "$work/alone.json" prediction/prediction.json
