@@ -94,7 +94,10 @@ TEST_F(Import, NamesUnitsSignsAndAxesDoNotMatter) {
     for (std::size_t i = 0; i < record.rows.size(); ++i) {
       const Observation &is = record.rows[i], &got = back.rows[i];
       EXPECT_NEAR(got.P_star, is.P_star, 1e-14) << i;
-      EXPECT_NEAR(got.C_star, is.C_star, 1e-13);
+      EXPECT_EQ(std::isnan(got.C_star), std::isnan(is.C_star));
+      if (!std::isnan(is.C_star)) {
+        EXPECT_NEAR(got.C_star, is.C_star, 1e-13);
+      }
       EXPECT_NEAR(got.rattler_fraction, is.rattler_fraction, 1e-15);
       EXPECT_NEAR(got.mean_overlap, is.mean_overlap, 1e-15);
       EXPECT_NEAR(got.time, is.time, 1e-15);
@@ -194,7 +197,7 @@ TEST_F(Import, RefusesWithFileLineColumnAndRemedy) {
   expect_parts(why(nothing, R"(, "sign": {"strain": "tension", "stress": "tension"})"),
                {"t.csv: line ", "column 'sxx[kPa]'", "stress sign?", R"({"stress": "compression"})"});
   expect_parts(why(nothing, R"(, "sign": {"strain": "compression", "stress": "compression"})"),
-               {"t.csv: line ", "column 'exx'", "the sign of the strain"});
+               {"t.csv: line ", "column 'sxx[kPa]'", "the sign of the strain"});
   expect_parts(why([](auto& rows) { rows[4].stress.tensor(0, 0) = NAN; }, declared), {"t.csv: line 6, column 'sxx[kPa]': is undefined", "remove"});
   expect_parts(why([](auto& rows) { std::swap(rows[4].time, rows[5].time); }, declared), {"t.csv: line 7, column 't': the time", "sort"});
   expect_parts(why([](auto& rows) { rows[7].nu *= 1.01; }, declared), {"t.csv: line 9, column 'nu': is 0.717"});
