@@ -58,9 +58,10 @@ bool is_defined(const LawState<double>& state, Rung model) {
 
 void check_start(const LawParameters<double>& parameters, double nu, const LawState<double>& start, Rung model) {
   if (model != Rung::reduced && start.F.array().isNaN().all())
-    throw InvalidInput(fmt::format("the start tells no fabric, which the {} law starts from; start from the law's own values, or ask "
-                                   "the reduced law",
-                                   to_string(model)));
+    throw InvalidInput(
+        fmt::format("the start tells no fabric, which the {} law starts from; start from the law's own values, or ask "
+                    "the reduced law",
+                    to_string(model)));
   for_each_part(
       [&](const StatePart& part, const auto& of_start) {
         if (!numbers(of_start).allFinite() && !is_defined(start, model))

@@ -25,8 +25,9 @@ void check_times(const ForeignRows& foreign) {
     const double before = foreign.rows[i - 1].time, here = foreign.rows[i].time;
     if (std::isnan(before) && std::isnan(here)) continue;
     if (!(here > before))
-      throw InvalidInput(fmt::format("{}: the time {} does not grow from {} of the row before; sort the rows, keep one of equals",
-                                     foreign.place(i, "time"), here, before));
+      throw InvalidInput(
+          fmt::format("{}: the time {} does not grow from {} of the row before; sort the rows, keep one of equals",
+                      foreign.place(i, "time"), here, before));
   }
 }
 
@@ -68,8 +69,9 @@ void check_output(const std::vector<ForeignTest>& foreign, const fs::path& outpu
     if (!test.mapping.series) continue;
     const fs::path file = test.mapping.series->file, folder = file.has_parent_path() ? file.parent_path() : ".";
     if (fs::equivalent(folder, output, absent))
-      throw InvalidInput(fmt::format("{}: holds the tables that are imported, {} among them; give another folder with -o",
-                                     output.string(), file.filename().string()));
+      throw InvalidInput(
+          fmt::format("{}: holds the tables that are imported, {} among them; give another folder with -o",
+                      output.string(), file.filename().string()));
   }
 }
 
@@ -102,15 +104,16 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
   check_contradictions(record.rows, record.path, record.packing, foreign.place);  // of what was given
   const Moved moved = move_onto(record.path, record.rows);
   if (moved.farthest > test.mapping.path_tolerance)
-    throw InvalidInput(fmt::format("{}: the strain is {:.3g} off {}, more than path_tolerance, {:g}; correct the path, or leave it "
-                                   "out to have it found, or allow more",
-                                   foreign.place(moved.row, "strain"), moved.farthest, path_text(record.path),
-                                   test.mapping.path_tolerance));
+    throw InvalidInput(fmt::format(
+        "{}: the strain is {:.3g} off {}, more than path_tolerance, {:g}; correct the path, or leave it "
+        "out to have it found, or allow more",
+        foreign.place(moved.row, "strain"), moved.farthest, path_text(record.path), test.mapping.path_tolerance));
   complete(record.rows, record.path, record.packing);
   check_series(record.rows, record.path, record.packing, foreign.place);
-  result.says = {fmt::format("{} rows", record.rows.size()), fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
-                 fmt::format("rows moved onto it by {:.2g} at most, tolerance {:g}", moved.farthest,
-                             test.mapping.path_tolerance)};
+  result.says = {
+      fmt::format("{} rows", record.rows.size()),
+      fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
+      fmt::format("rows moved onto it by {:.2g} at most, tolerance {:g}", moved.farthest, test.mapping.path_tolerance)};
   result.provenance = foreign.provenance;
   result.provenance["path"] = {{"given", !test.mapping.segments.empty()},
                                {"tolerance", test.mapping.path_tolerance},

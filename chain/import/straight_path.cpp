@@ -14,7 +14,7 @@ namespace grainlaw::chain {
 namespace {
 
 constexpr double kSameDirection = 0.05;  // angle up to which a direction passes for a mode that its rows allow, too
-constexpr double kEqual = 1e-24;  // squares of distances that differ by rounding alone
+constexpr double kEqual = 1e-24;         // squares of distances that differ by rounding alone
 constexpr std::size_t kMostWork = 200000000;  // rows times segments
 
 using Tensor = Eigen::Matrix3d;
@@ -55,9 +55,10 @@ void find_corners(const std::vector<Observation>& rows, std::size_t first, std::
     const std::size_t corner = worst_row(rows, a, b, tolerance);
     if (corner == a) continue;
     if (corners.size() == kMaxFoundSegments)
-      throw InvalidInput(fmt::format("the strains turn more than {} times; give a path, a larger path_tolerance (now {:g}), or "
-                                     "smooth them",
-                                     kMaxFoundSegments, tolerance));
+      throw InvalidInput(
+          fmt::format("the strains turn more than {} times; give a path, a larger path_tolerance (now {:g}), or "
+                      "smooth them",
+                      kMaxFoundSegments, tolerance));
     corners.push_back(corner);
     open.emplace_back(a, corner);
     open.emplace_back(corner, b);
@@ -101,7 +102,8 @@ PathSegment straight(const std::vector<Observation>& rows, std::size_t first, st
   double least = tolerance;
   for (const Candidate& candidate : candidates_of(step)) {
     const double norm = candidate.D.norm();
-    if (!(norm > 0) || !(candidate.D.cwiseProduct(step).sum() > std::cos(kSameDirection) * norm * step.norm())) continue;
+    if (!(norm > 0) || !(candidate.D.cwiseProduct(step).sum() > std::cos(kSameDirection) * norm * step.norm()))
+      continue;
     const double off = farthest(candidate.D);
     // the traceless tensor has six components to meet the rows with where a mode has none: it comes last
     if (candidate.mode == Mode::tensor ? best.mode != Mode::tensor || off > tolerance : off > least) continue;
@@ -109,7 +111,8 @@ PathSegment straight(const std::vector<Observation>& rows, std::size_t first, st
     best = candidate;
   }
   if (best.mode == Mode::tensor) best.D /= best.D.norm();
-  const double length = component_along(step, best.D), shear = deviatoric_norm(best.D), volume = std::abs(best.D.trace());
+  const double length = component_along(step, best.D), shear = deviatoric_norm(best.D),
+               volume = std::abs(best.D.trace());
   PathSegment segment{best.mode, {best.D}, ExtentKind::eps_dev, shear * length};
   if (shear < volume) {
     segment.extent_kind = ExtentKind::eps_vol;
@@ -169,9 +172,10 @@ std::vector<PathSegment> found_segments(const std::vector<Observation>& rows, do
   double reach = 0;
   for (const Observation& row : rows) reach = std::max(reach, row.strain.tensor.norm());
   if (!(reach > tolerance))
-    throw InvalidInput(fmt::format("the strain never exceeds {:.3g}, which path_tolerance, {:g}, takes for none; are its units "
-                                   "right?",
-                                   reach, tolerance));
+    throw InvalidInput(
+        fmt::format("the strain never exceeds {:.3g}, which path_tolerance, {:g}, takes for none; are its units "
+                    "right?",
+                    reach, tolerance));
   std::vector<std::size_t> corners;
   find_corners(rows, 0, rows.size() - 1, tolerance, corners);
   corners.push_back(rows.size() - 1);
@@ -212,7 +216,8 @@ std::string path_text(const Path& path) {
   std::vector<std::string> parts;
   for (const PathSegment& segment : path.segments) {
     const Tensor& D = segment.direction.tensor;
-    parts.push_back(fmt::format("{} ({:.4g} {:.4g} {:.4g}{}) to {} {:.6g}", to_string(segment.mode), D(0, 0), D(1, 1), D(2, 2),
+    parts.push_back(fmt::format("{} ({:.4g} {:.4g} {:.4g}{}) to {} {:.6g}", to_string(segment.mode), D(0, 0), D(1, 1),
+                                D(2, 2),
                                 D.isDiagonal() ? "" : fmt::format(" {:.4g} {:.4g} {:.4g}", D(1, 2), D(0, 2), D(0, 1)),
                                 to_string(segment.extent_kind), segment.extent));
   }

@@ -168,13 +168,11 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
     to_frames(stepper, segment, e);
   };
   const StepObserver& on_step = probes && frames ? to_both : frames ? to_frames : to_probes;
-  State start;
-  if (!checkpoint) start = start_state(store, test, control);
-  if (!checkpoint && frames) frames->keep_start(start, options.drive);
   const ElementTest done =
       checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
                                          checkpoints.checkpointing())
-                 : run_element_test(start, segments, options, control, on_step, checkpoints.checkpointing());
+                 : run_element_test(start_state(store, test, control), segments, options, control, on_step,
+                                    checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
   write_series(folder / "series.csv", done.rows);
   std::vector<std::string> warnings = done.warnings;
   if (probes) {

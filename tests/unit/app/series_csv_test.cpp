@@ -136,7 +136,8 @@ TEST_F(SeriesCsv, GoesWithoutFabricAndContacts) {
   const auto rows = read(text_without(optional));
   ASSERT_EQ(rows.size(), record_.rows.size());
   for (const Observation& row : rows) {
-    EXPECT_TRUE(row.fabric.tensor.array().isNaN().all() && std::isnan(row.F_v) && std::isnan(row.F_par) && std::isnan(row.C_star));
+    EXPECT_TRUE(row.fabric.tensor.array().isNaN().all() && std::isnan(row.F_v) && std::isnan(row.F_par) &&
+                std::isnan(row.C_star));
     EXPECT_TRUE(std::isfinite(row.P_star));
   }
   EXPECT_EQ(refusal([&] { check_series(rows, record_.path, record_.packing, "t"); }), "accepted");

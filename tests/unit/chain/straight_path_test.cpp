@@ -26,10 +26,12 @@ std::vector<Observation> rows_along(const Path& path, int per_segment, double no
   return rows;
 }
 
-const Path kTurning{0.7, Branch::unloading,
+const Path kTurning{0.7,
+                    Branch::unloading,
                     {segment(Mode::D2, "yzx", false, ExtentKind::eps_dev, 0.1),
                      segment(Mode::ISO, "xyz", false, ExtentKind::eps_vol, 0.03),
-                     segment(Mode::D2, "yzx", true, ExtentKind::eps_dev, 0.2), segment(Mode::UNI, "xzy", false, ExtentKind::eps_dev, 0.05),
+                     segment(Mode::D2, "yzx", true, ExtentKind::eps_dev, 0.2),
+                     segment(Mode::UNI, "xzy", false, ExtentKind::eps_dev, 0.05),
                      segment(Mode::D3, "zyx", false, ExtentKind::eps_dev, 0.1)}};
 
 TEST(StraightPath, IsFoundAgain) {
@@ -47,8 +49,10 @@ TEST(StraightPath, IsFoundAgain) {
 
 // Unloading and loading again lie on the line from the first to the last row.
 TEST(StraightPath, TurnsOnOneLineAreFound) {
-  const Path loop{0.7, Branch::unloading,
-                  {segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.1), segment(Mode::D2, "xyz", true, ExtentKind::eps_dev, 0.04),
+  const Path loop{0.7,
+                  Branch::unloading,
+                  {segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.1),
+                   segment(Mode::D2, "xyz", true, ExtentKind::eps_dev, 0.04),
                    segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.15)}};
   const auto found = found_segments(rows_along(loop, 25, 1e-6), 1e-4);
   ASSERT_EQ(found.size(), 3u);
@@ -67,7 +71,8 @@ TEST(StraightPath, KeepsTheVolumeOfAShearThatIsNoMode) {
 }
 
 TEST(StraightPath, IsNotStraightenedBeyondTheTolerance) {
-  const Path path{0.7, Branch::unloading, {{Mode::tensor, {Eigen::Vector3d(1.01, 0, -1).asDiagonal()}, ExtentKind::eps_dev, 0.2}}};
+  const Path path{
+      0.7, Branch::unloading, {{Mode::tensor, {Eigen::Vector3d(1.01, 0, -1).asDiagonal()}, ExtentKind::eps_dev, 0.2}}};
   const auto found = found_segments(rows_along(path, 30), 1e-4);  // 1e-3 from D2 at its end
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].mode, Mode::tensor);
@@ -110,7 +115,8 @@ TEST(StraightPath, CyclesAreToldApartWithoutRowsAtTheCorners) {
   }
   EXPECT_LE(move_onto(cycles, without_corners).farthest, 1e-12);
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    const bool first = i > 0 && expected[i] != expected[i - 1];  // at the strain of the last before: may belong to either
+    const bool first =
+        i > 0 && expected[i] != expected[i - 1];  // at the strain of the last before: may belong to either
     if (!first) {
       EXPECT_EQ(without_corners[i].segment, expected[i]) << i;
     }
@@ -119,7 +125,8 @@ TEST(StraightPath, CyclesAreToldApartWithoutRowsAtTheCorners) {
 
 TEST(StraightPath, RefusesStrainsThatSayNone) {
   std::vector<Observation> rows(5);
-  EXPECT_NE(testing::refusal([&] { found_segments(rows, 1e-4); }).find("the strain never exceeds 0"), std::string::npos);
+  EXPECT_NE(testing::refusal([&] { found_segments(rows, 1e-4); }).find("the strain never exceeds 0"),
+            std::string::npos);
   rows.resize(4000);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].strain.tensor(0, 0) = 1e-2 * static_cast<double>(i % 2);
   EXPECT_NE(testing::refusal([&] { found_segments(rows, 1e-4); }).find("turn more than 1000 times"), std::string::npos);
