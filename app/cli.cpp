@@ -126,11 +126,13 @@ std::string command_line(int argc, char** argv) {
 }
 
 int perform(const Task& task, const Common& common, const std::string& command) {
+  std::stop_token stop;
   try {
     const InterruptGuard interrupt;
+    stop = interrupt.token();
     ProgressPrinter progress(stderr, common.quiet);
     Session session{{.threads = common.threads,
-                     .stop = interrupt.token(),
+                     .stop = stop,
                      .watch = progress,
                      .resume = common.resume,
                      .checkpoint_interval = common.checkpoint_interval,
@@ -138,6 +140,7 @@ int perform(const Task& task, const Common& common, const std::string& command) 
                     common.json};
     return static_cast<int>(task(session));
   } catch (const InvalidInput& error) {
+    if (stop.stop_requested()) return fail(ExitCode::interrupted, fmt::format("interrupted: {}", error.what()));
     return fail(ExitCode::invalid_input, error.what());
   } catch (const NotConverged& error) {
     return fail(ExitCode::not_converged, error.what());

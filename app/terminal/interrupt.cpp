@@ -51,7 +51,7 @@ InterruptGuard::InterruptGuard() : watch_(new Watch) {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigemptyset(&action.sa_mask);
-  action.sa_flags = SA_RESTART;
+  action.sa_flags = 0;  // what waits, as the opening of a FIFO that nobody writes does, ends with EINTR
   sigaction(SIGINT, &action, &watch_->earlier_int);
   sigaction(SIGTERM, &action, &watch_->earlier_term);
 }
