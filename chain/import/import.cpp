@@ -103,7 +103,7 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
   record.path = path_of(mapping, test.mapping, foreign);
   complete(record.rows, record.path, record.packing);
   check_contradictions(record.rows, record.path, record.packing, foreign.place);  // of what was given
-  const Moved moved = move_onto(record.path, record.rows);
+  const Moved moved = move_onto(record.path, test.mapping.path_tolerance, record.rows);
   if (moved.farthest > test.mapping.path_tolerance)
     throw InvalidInput(fmt::format(
         "{}: the strain is {:.3g} off {}, more than path_tolerance, {:g}; correct the path, or leave it "
