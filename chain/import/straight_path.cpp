@@ -132,6 +132,17 @@ Place nearest(const StraightSegment& segment, const Tensor& strain, double from)
   return {e, (along - e * D).norm()};
 }
 
+/// The first row of a segment ends the one before it where it is the corner, to `tolerance`, and no row before is nearer.
+void end_at_corners(const std::vector<StraightSegment>& segments, const std::vector<Observation>& rows, double tolerance,
+                    std::vector<int>& of_row) {
+  for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
+    if (of_row[i] == of_row[i - 1] || of_row[i] != of_row[i + 1]) continue;
+    const Tensor& corner = segments[static_cast<std::size_t>(of_row[i])].strain_start.tensor;
+    const double off = (rows[i].strain.tensor - corner).norm();
+    if (off <= tolerance && off < (rows[i - 1].strain.tensor - corner).norm()) --of_row[i];
+  }
+}
+
 /// Segment of each row, ascending without gaps, such that the squares of the distances are least; going back on a segment counts as
 /// distance. Of equals the earlier segment: a corner ends the segment before it.
 std::vector<int> segments_of_rows(const std::vector<StraightSegment>& segments, const std::vector<Observation>& rows) {
@@ -194,9 +205,10 @@ std::vector<PathSegment> found_segments(const std::vector<Observation>& rows, do
   return segments;
 }
 
-Moved move_onto(const Path& path, std::vector<Observation>& rows) {
+Moved move_onto(const Path& path, double tolerance, std::vector<Observation>& rows) {
   const std::vector<StraightSegment> segments = resolve(path);
-  const std::vector<int> of_row = segments_of_rows(segments, rows);
+  std::vector<int> of_row = segments_of_rows(segments, rows);
+  end_at_corners(segments, rows, tolerance, of_row);
   Moved moved;
   double e = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {

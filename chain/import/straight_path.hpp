@@ -23,8 +23,8 @@ struct Moved {
 };
 
 /// Gives each row its segment, and strain and volume fraction of its place there: the nearest that goes forward from row to row, by
-/// least squares over all rows.
-Moved move_onto(const Path& path, std::vector<Observation>& rows);
+/// least squares over all rows. A row at a corner, to `tolerance`, ends the segment before it: the next one starts from it.
+Moved move_onto(const Path& path, double tolerance, std::vector<Observation>& rows);
 
 /// "D2 (compression of z) to eps_dev 0.26, ISO ...", for people.
 std::string path_text(const Path& path);
