@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <new>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -153,6 +155,7 @@ int perform(const Task& task, const Common& common, const std::string& command) 
 }  // namespace
 
 int run(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the shell's limit is an error of its write then, with a message
   CLI::App app("grainlaw: from frictionless grains to an incremental constitutive law and back", "grainlaw");
   Common common;
   Task task;
@@ -162,13 +165,14 @@ int run(int argc, char** argv) {
   if (help) words.erase(words.begin());
   if (const std::string slip = slip_in(app, words); !slip.empty()) return fail(ExitCode::invalid_input, slip);
   const CLI::App& command = command_of(app, words);
-  if (help) {
-    const Task say = [&](Session&) {
-      print_result(command.help());
+  const auto say = [&](const std::string& text) {  // with an error where the output takes nothing
+    const Task task_of_saying = [&](Session&) {
+      print_result(text);
       return ExitCode::ok;
     };
-    return perform(say, common, "grainlaw help");
-  }
+    return perform(task_of_saying, common, "grainlaw help");
+  };
+  if (help) return say(command.help());
   if (words.empty() || (words.size() == 1 && !commands_of(command).empty() && &command != &app)) {
     std::fputs((words.empty() ? overview(app) : command.help()).c_str(), stderr);
     return static_cast<int>(ExitCode::invalid_input);
@@ -176,7 +180,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version
-    return app.exit(wish);
+    std::ostringstream text;
+    app.exit(wish, text, text);
+    return say(text.str());
   } catch (const CLI::ParseError& error) {
     return fail(ExitCode::invalid_input, fmt::format("{}; see {} --help", error.what(), full_name(command)));
   } catch (const std::exception& error) {

@@ -80,9 +80,16 @@ std::vector<TestRecord> described_tests(const Dataset& dataset) {
   return all;
 }
 
-/// The law and what it is compared with; calibration.json and parameters.json.
-fit::Calibration fit_and_save(const Dataset& dataset, const fs::path& folder, const fit::CalibrationOptions& options,
-                              const fs::path& output, const Execution& execution) {
+/// A fit and what it is compared with, in no file yet.
+struct Fitted {
+  fit::Calibration calibration;
+  fit::ModeComparison modes;
+  std::vector<FittedPath> paths;
+};
+
+/// Of the data set that was read in `folder`.
+Fitted fitted(const Dataset& dataset, const fs::path& folder, const fit::CalibrationOptions& options,
+              const Execution& execution) {
   Watch& watch = execution.watch;
   const double packings = static_cast<double>(dataset.seeds.size());
   // of the time that the parts take together; the other modes are fitted in closed forms alone
@@ -93,34 +100,39 @@ fit::Calibration fit_and_save(const Dataset& dataset, const fs::path& folder, co
     return result;
   };
   const std::vector<TestRecord> tests = tests_of(dataset, Role::calibration);
-  fit::Calibration calibration =
-      part(0, "fit", [&](const RunControl& control) { return fit::calibrate(tests, options, control); });
-  calibration.law.dataset_digest = dataset.digest;
-  rehearse(calibration.law, rehearsals_of(dataset, folder), execution);
+  Fitted all;
+  all.calibration = part(0, "fit", [&](const RunControl& control) { return fit::calibrate(tests, options, control); });
+  CalibratedLaw& law = all.calibration.law;
+  law.dataset_digest = dataset.digest;
+  rehearse(law, rehearsals_of(dataset, folder), execution);
   if (options.profiles)
-    calibration.left_out = part(1, "fits without one packing", [&](const RunControl& control) {
+    all.calibration.left_out = part(1, "fits without one packing", [&](const RunControl& control) {
       return fit::leave_one_out(tests, options, control);
     });
-  fit::ModeComparison modes;
-  modes.descriptions = part(2, "fit of the other modes", [&](const RunControl& control) {
-    return fit::describe(described_tests(dataset), calibration.law.parameters.isotropic.pressure.nu_c, options,
-                         control);
+  all.modes.descriptions = part(2, "fit of the other modes", [&](const RunControl& control) {
+    return fit::describe(described_tests(dataset), law.parameters.isotropic.pressure.nu_c, options, control);
   });
-  modes.verdicts = verdicts_of(calibration.law, modes.descriptions, dataset.seeds.size());
+  all.modes.verdicts = verdicts_of(law, all.modes.descriptions, dataset.seeds.size());
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
-  modes.claims = claims_of(shown, calibration.law, modes.descriptions, options.steady_from);
+  all.modes.claims = claims_of(shown, law, all.modes.descriptions, options.steady_from);
   watch.end();
+  all.paths = fitted_paths(law, shown, execution);
+  return all;
+}
+
+/// fitted_paths.json, calibration.json and, last, parameters.json.
+void save(const Fitted& all, const fit::CalibrationOptions& options, const fs::path& output,
+          const Execution& execution) {
   const OrderedJson origin = provenance(execution);
-  write_fitted_paths(output / "fitted_paths.json", fitted_paths(calibration.law, shown, execution), origin);
-  write_calibration(output / "calibration.json", calibration, options, modes, origin);
-  write_parameters(output / "parameters.json", {calibration.law, Json(origin)});
-  for (const fit::Stage& stage : calibration.stages) {
+  write_fitted_paths(output / "fitted_paths.json", all.paths, origin);
+  write_calibration(output / "calibration.json", all.calibration, options, all.modes, origin);
+  write_parameters(output / "parameters.json", {all.calibration.law, Json(origin)});
+  for (const fit::Stage& stage : all.calibration.stages) {
     if (!stage.converged)
-      watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
+      execution.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
   }
-  for (const std::string& warning : calibration.warnings) watch.log("warning: " + warning);
-  return calibration;
+  for (const std::string& warning : all.calibration.warnings) execution.watch.log("warning: " + warning);
 }
 
 }  // namespace
@@ -152,10 +164,13 @@ fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Exec
 }
 
 Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const fs::path& output,
-                          const Execution& execution, dem::RunCounts& counts) {
+                          const Execution& execution, dem::RunCounts& counts,
+                          const std::function<void()>& before_writing) {
   const dem::RunStore store(output, "runs");
   const std::vector<dem::PlannedTest> tests = plan(spec);
-  Dataset dataset = dem::run_planned(tests, Json(dem::spec_to_json(spec)), folder, store, execution, counts);
+  dem::make_runs(tests, store, execution, counts);
+  if (before_writing) before_writing();
+  Dataset dataset = dem::collect_runs(tests, Json(dem::spec_to_json(spec)), folder, store, execution);
   dem::write_pictures(folder, tests, store, execution.threads);
   log_warnings(dataset, execution.watch);
   return dataset;
@@ -163,24 +178,40 @@ Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const f
 
 CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOptions& options, const fs::path& output,
                             const Execution& execution) {
-  make_output_folder(output);
-  const fs::path folder = make_subfolder(output, "dataset");
+  if (fs::exists(output)) make_output_folder(output);  // refuses what is no folder before any work
   if (input.spec) input.spec->coupling = to_string(options.coupling);
   const OrderedJson spec = input.spec ? dem::spec_to_json(*input.spec) : OrderedJson();
-  remove_results_of_others(output, input.dataset ? "" : json_text(spec));
-  if (input.spec) write_json(output / "spec.resolved.json", spec);
+  // Earlier results stay until there is something to replace them with.
+  const auto replace_results = [&] {
+    remove_results_of_others(output, input.dataset ? "" : json_text(spec));
+    if (input.spec) write_json(output / "spec.resolved.json", spec);
+  };
   CalibrationResult result;
+  Stopwatch stopwatch;
+  Fitted all;
   if (input.dataset) {
+    all = fitted(*input.dataset, input.dataset_folder, options, execution);
+    result.fit_seconds = stopwatch.seconds();
+    make_output_folder(output);
+    const fs::path folder = make_subfolder(output, "dataset");
+    replace_results();
     result.dataset = adopt(*input.dataset, input.dataset_folder, folder);
     adopt_rehearsals(input.dataset_folder, folder);
     dem::adopt_pictures(input.dataset_folder, folder);
     log_warnings(result.dataset, execution.watch);
   } else {
-    result.dataset = simulate_data_set(*input.spec, folder, output, execution, result.counts);
+    const fs::path folder = output / "dataset";
+    result.dataset = without_empty_folders({folder, output}, [&] {
+      make_output_folder(output);
+      make_subfolder(output, "dataset");
+      return simulate_data_set(*input.spec, folder, output, execution, result.counts, replace_results);
+    });
+    stopwatch = {};
+    all = fitted(result.dataset, folder, options, execution);
+    result.fit_seconds = stopwatch.seconds();
   }
-  const Stopwatch stopwatch;
-  result.calibration = fit_and_save(result.dataset, folder, options, output, execution);
-  result.fit_seconds = stopwatch.seconds();
+  save(all, options, output, execution);
+  result.calibration = std::move(all.calibration);
   return result;
 }
 

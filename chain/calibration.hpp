@@ -3,6 +3,7 @@
 //   spec.resolved.json, runs/, dataset/, calibration.json, fitted_paths.json, parameters.json       (docs/formats.md)
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 #include "dem/runs/dataset_runs.hpp"
@@ -40,8 +41,10 @@ struct CalibrationResult {
 CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOptions& options,
                             const std::filesystem::path& output, const Execution& execution);
 
-/// The first part of it: simulates the tests of `spec` into `folder`, with the runs in `output`/runs.
+/// The first part of it: simulates the tests of `spec` into `folder`, with the runs in `output`/runs. `before_writing` is called
+/// when all runs are there and nothing else has changed yet.
 Dataset simulate_data_set(const dem::Spec& spec, const std::filesystem::path& folder,
-                          const std::filesystem::path& output, const Execution& execution, dem::RunCounts& counts);
+                          const std::filesystem::path& output, const Execution& execution, dem::RunCounts& counts,
+                          const std::function<void()>& before_writing = {});
 
 }  // namespace grainlaw::chain

@@ -129,9 +129,11 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
     const std::uint64_t seed = test.record.packing.seed;
     for (const Rung model : law.rungs) {
       for (const Initial initial : initials_of(input)) {
-        if (initial == Initial::measured && model != Rung::reduced && !test.record.rows.front().fabric.tensor.allFinite()) {
-          content.failures.push_back({model, initial, seed,
-                                      "the run tells no fabric, which this rung starts from; --initial law does without it"});
+        if (initial == Initial::measured && model != Rung::reduced &&
+            !test.record.rows.front().fabric.tensor.allFinite()) {
+          content.failures.push_back(
+              {model, initial, seed,
+               "the run tells no fabric, which this rung starts from; --initial law does without it"});
           continue;
         }
         const auto start = initial == Initial::law ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
@@ -212,8 +214,9 @@ void add_rehearsals(const Law& law, predict::PredictionFolder& content) {
 /// What the law does not know of a path, whichever rung.
 void add_path_warnings(const CalibratedLaw& law, predict::PredictionFolder& content) {
   if (!knows_fabric(law.parameters))
-    content.warnings.emplace_back("the law was calibrated without fabric: it says nothing of it, and the rungs beyond the reduced one "
-                                  "are not there");
+    content.warnings.emplace_back(
+        "the law was calibrated without fabric: it says nothing of it, and the rungs beyond the reduced one "
+        "are not there");
   if (content.path.branch != Branch::unloading) {
     content.warnings.push_back(fmt::format(
         "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "
@@ -241,22 +244,9 @@ std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const Prediction
               input.path_name);
 }
 
-/// What `work` returns; folders that it leaves empty when it throws are removed, `inner` before `outer`.
-template <class Work>
-auto without_empty_folders(const fs::path& inner, const fs::path& outer, const Work& work) {
-  try {
-    return work();
-  } catch (...) {
-    std::error_code not_empty;  // then it stays
-    fs::remove(inner, not_empty);
-    fs::remove(outer, not_empty);
-    throw;
-  }
-}
-
 Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& output,
                   const Execution& execution) {
-  return without_empty_folders(output / "dem", output, [&] {
+  return without_empty_folders({output / "dem", output}, [&] {
     make_output_folder(output);
     const fs::path folder = make_subfolder(output, "dem");
     make_output_folder(runs.store);

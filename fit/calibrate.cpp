@@ -65,8 +65,8 @@ bool any_sheared(const std::vector<Trajectory>& trajectories) {
 }
 
 void fix_by_decision(CalibratedLaw& law) {
-  for (const auto& [name, value] : {std::pair{"memory.m", law.parameters.memory.m},
-                                    {"memory.a_P", law.parameters.memory.a_P}})
+  for (const auto& [name, value] :
+       {std::pair{"memory.m", law.parameters.memory.m}, {"memory.a_P", law.parameters.memory.a_P}})
     law.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed, "by docs/decisions/0005-memory-law.md"};
 }
 

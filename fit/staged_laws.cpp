@@ -42,8 +42,9 @@ void assume_contacts(const StateLawName& of, Calibration& calibration, const Cal
       if (name.ends_with(".nu_c")) continue;
       const std::size_t i = parameter_index(name);
       *field[i] = parameter_table()[i].published.value();
-      stage.absent.push_back({name, {*field[i], kUndefined, Status::fixed,
-                                     std::string("as published, p0 and gamma_p refer to it; ") + kAddContacts}});
+      stage.absent.push_back({name,
+                              {*field[i], kUndefined, Status::fixed,
+                               std::string("as published, p0 and gamma_p refer to it; ") + kAddContacts}});
     }
     run(stage, calibration, options, control);
   }
@@ -52,7 +53,8 @@ void assume_contacts(const StateLawName& of, Calibration& calibration, const Cal
 /// The jamming density of Eq. (11) where nobody counted contacts: the pressure's.
 void tie_jamming(const StateLawName& of, Calibration& calibration) {
   const std::string prefix = of.prefix;
-  const std::size_t from = parameter_index(prefix + "pressure.nu_c"), to = parameter_index(prefix + "coordination.nu_c");
+  const std::size_t from = parameter_index(prefix + "pressure.nu_c"),
+                    to = parameter_index(prefix + "coordination.nu_c");
   const auto i = static_cast<Eigen::Index>(from), j = static_cast<Eigen::Index>(to);
   CalibratedLaw& law = calibration.law;
   law.estimates[to] = law.estimates[from];
@@ -121,13 +123,14 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
     cluster.push_back(packing_of(data, *data.pure_shear[i]));
   }
   for (const ShearQuantity& quantity : kShearQuantities)
-    run(density_law_stage(quantity, of_law, cluster, calibration.law.parameters.shear_nu_c, options), calibration, options,
-        control);
+    run(density_law_stage(quantity, of_law, cluster, calibration.law.parameters.shear_nu_c, options), calibration,
+        options, control);
 }
 
 void tie_errors(CalibratedLaw& law) {
   for (const std::string prefix : {"", "steady_"}) {
-    const std::size_t from = parameter_index(prefix + "pressure.nu_c"), to = parameter_index(prefix + "coordination.nu_c");
+    const std::size_t from = parameter_index(prefix + "pressure.nu_c"),
+                      to = parameter_index(prefix + "coordination.nu_c");
     if (law.estimates[to].status != Status::tied) continue;
     const auto i = static_cast<Eigen::Index>(from), j = static_cast<Eigen::Index>(to);
     law.estimates[to].standard_error = law.estimates[from].standard_error;

@@ -56,7 +56,8 @@ struct ValidRange {
 
 struct CalibratedLaw {
   Coupling coupling = Coupling::energy;
-  LawParameters<double> parameters;  ///< not identified ones stay at their start (the fabric's: NaN) and must not be read
+  LawParameters<double>
+      parameters;  ///< not identified ones stay at their start (the fabric's: NaN) and must not be read
   std::array<Estimate, kParameterCount> estimates;  ///< in the order of parameter_table()
   Eigen::MatrixXd covariance;  ///< kParameterCount square, zero where there is no error; its degrees of freedom are the
                                ///< estimates'

@@ -58,9 +58,10 @@ bool is_defined(const LawState<double>& state, Rung model) {
 
 void check_start(const LawParameters<double>& parameters, double nu, const LawState<double>& start, Rung model) {
   if (model != Rung::reduced && start.F.array().isNaN().all())
-    throw InvalidInput(fmt::format("the start tells no fabric, which the {} law starts from; start from the law's own values, or ask "
-                                   "the reduced law",
-                                   to_string(model)));
+    throw InvalidInput(
+        fmt::format("the start tells no fabric, which the {} law starts from; start from the law's own values, or ask "
+                    "the reduced law",
+                    to_string(model)));
   for_each_part(
       [&](const StatePart& part, const auto& of_start) {
         if (!numbers(of_start).allFinite() && !is_defined(start, model))
@@ -194,7 +195,8 @@ LawState<double> state_from_row(const Observation& row) {
   }
   const LawState<double> state{row.P_star, deviator<double>(row.stress.tensor) * (row.P_star / P),
                                deviator<double>(row.fabric.tensor)};
-  if (!is_defined(state, Rung::reduced)) throw InvalidInput("the measured start has a stress that is not finite");
+  if (!is_defined(state, Rung::reduced) || !(state.F.allFinite() || row.fabric.tensor.array().isNaN().all()))
+    throw InvalidInput("the measured start has a stress or fabric that is not finite");
   return state;
 }
 

@@ -18,7 +18,7 @@ Task declare_completion(CLI::App& command) {
     if (file->empty())
       print_result(script);
     else
-      write_durably(*file, script);
+      write_as_named(*file, script);
     return ExitCode::ok;
   };
 }

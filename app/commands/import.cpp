@@ -21,7 +21,8 @@ ExitCode import(const ImportOptions& options, const Session& session) {
     throw InvalidInput("import: misses the folder of the data set; give it with -o, or --dry-run");
   const chain::Mapping mapping = chain::read_mapping(options.mapping);
   const std::vector<chain::ForeignTest> foreign = chain::read_foreign(mapping, session);
-  if (!session.json) print_result(columns_text(foreign));  // before anything is judged: a refusal may come of a wrong guess
+  if (!session.json)
+    print_result(columns_text(foreign));  // before anything is judged: a refusal may come of a wrong guess
   std::vector<chain::ImportedTest> tests;
   for (const chain::ForeignTest& test : foreign) tests.push_back(chain::imported(mapping, test));
   if (!session.json) print_result(paths_text(tests));
@@ -29,7 +30,8 @@ ExitCode import(const ImportOptions& options, const Session& session) {
     const Dataset dataset = chain::write_imported(mapping, foreign, tests, options.output, session);
     if (!session.json) print_result(written_text(dataset, options.output));
   }
-  if (session.json) print_result(json_text(import_json(foreign, tests, options.dry_run ? "" : options.output.string())));
+  if (session.json)
+    print_result(json_text(import_json(foreign, tests, options.dry_run ? "" : options.output.string())));
   return ExitCode::ok;
 }
 

@@ -53,15 +53,20 @@ ExitCode init(const InitOptions& options) {
   const bool dataset = options.kind == Starter::dataset;
   const std::string name = to_string(options.kind) + (dataset ? "" : ".json");
   const fs::path output = options.output.empty() ? fs::path(name) : options.output;
+  const bool to_output = output == "-";
+  if (to_output && dataset) throw InvalidInput("init: a data set is a folder; name one with -o");
   if (dataset && fs::exists(output / "dataset.json"))
     throw InvalidInput(fmt::format("{}: holds a data set already; give another folder with -o", output.string()));
   if (dataset) make_output_folder(output);
   for (const auto& [file, text] : starters::kFiles) {
     if (dataset && file.starts_with("dataset/"))
       write_new(output / file.substr(8), localised(text));
+    else if (!dataset && file == name && to_output)
+      print_result(localised(text));
     else if (!dataset && file == name)
       write_new(output, localised(text));
   }
+  if (to_output) return ExitCode::ok;
   const char* next = options.kind == Starter::spec   ? "grainlaw calibrate {} -o out"
                      : options.kind == Starter::test ? "grainlaw simulate {} -o out"
                      : options.kind == Starter::path ? "grainlaw predict out/parameters.json {} -o out/predictions/mine"
@@ -76,7 +81,7 @@ ExitCode init(const InitOptions& options) {
 Task declare_init(CLI::App& command) {
   const auto options = std::make_shared<InitOptions>();
   add_choice<Starter>(command, "KIND", options->kind, "of the starter: spec, test, path or dataset")->required();
-  command.add_option("-o,--output", options->output, "file, or folder of a data set (default: named after KIND)")
+  command.add_option("-o,--output", options->output, "file, - for standard output, or folder of a data set (default: named after KIND)")
       ->type_name("FILE");
   return [options](Session&) { return init(*options); };
 }

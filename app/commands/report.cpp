@@ -11,12 +11,16 @@ Task declare_report(CLI::App& command) {
   const auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>(),
              other = std::make_shared<std::filesystem::path>();
   command.add_option("DIR", *folder, "folder of a calibration")->required()->type_name("DIR");
-  command.add_option("-o,--output", *html, "file of the page, e.g. report.html; not needed with --json")->type_name("FILE");
+  command.add_option("-o,--output", *html, "file of the page, e.g. report.html, or - for standard output; not needed with --json")->type_name("FILE");
   command.add_option("--compare", *other, "folder of another calibration, set beside this one")->type_name("DIR");
   return [folder, html, other](Session& session) {
     if (html->empty() && !session.json)
       throw InvalidInput("report: -o FILE is missing, the page's file; or --json for its numbers on standard output");
+    const bool to_output = *html == "-";
+    if (to_output && session.json)
+      throw InvalidInput("report: -o - and --json both write to standard output; leave one of them out");
     if (!html->empty()) write_report(*folder, *html, *other);
+    if (to_output) return ExitCode::ok;
     print_result(session.json ? json_text(report_json(*folder, *other))
                               : summary_table(*folder) + "\n" + html->string() + "\n");
     return ExitCode::ok;

@@ -228,7 +228,7 @@ Page page_about(const std::filesystem::path& dir, const std::filesystem::path& c
 
 void write_report(const std::filesystem::path& dir, const std::filesystem::path& html,
                   const std::filesystem::path& compare) {
-  write_durably(html, report::page_html(report::page_about(dir, compare)));
+  write_as_named(html, report::page_html(report::page_about(dir, compare)));
 }
 
 OrderedJson report_json(const std::filesystem::path& dir, const std::filesystem::path& compare) {

@@ -70,8 +70,9 @@ std::string paths_text(const std::vector<chain::ImportedTest>& tests) {
 }
 
 std::string written_text(const Dataset& dataset, const std::filesystem::path& output) {
-  return fmt::format("{}: {} tests on {} packings\nnext: grainlaw check {}\n      grainlaw calibrate --dataset {} -o law\n",
-                     output.string(), dataset.tests.size(), dataset.seeds.size(), output.string(), output.string());
+  return fmt::format(
+      "{}: {} tests on {} packings\nnext: grainlaw check {}\n      grainlaw calibrate --dataset {} -o law\n",
+      output.string(), dataset.tests.size(), dataset.seeds.size(), output.string(), output.string());
 }
 
 OrderedJson import_json(const std::vector<chain::ForeignTest>& foreign, const std::vector<chain::ImportedTest>& tests,

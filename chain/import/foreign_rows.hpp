@@ -31,7 +31,7 @@ struct ForeignRows {
   /// "FILE: line 17, column 'sxx'" for messages: of a row, from 0, and one of our columns.
   std::function<std::string(std::size_t row, const std::string& column)> place;
   std::vector<ColumnUse> columns;
-  std::vector<std::string> notes;      ///< what else was taken as given, e.g. signs that were evident
+  std::vector<std::string> notes;  ///< what else was taken as given, e.g. signs that were evident
   ExtraColumns extra;
   OrderedJson provenance;              ///< files with their digests, and how they were read
   std::optional<PackingInfo> packing;  ///< where the files say it themselves; none: the mapping's

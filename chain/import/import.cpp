@@ -69,8 +69,9 @@ void check_output(const std::vector<ForeignTest>& foreign, const fs::path& outpu
     if (!test.mapping.series) continue;
     const fs::path file = test.mapping.series->file, folder = file.has_parent_path() ? file.parent_path() : ".";
     if (fs::equivalent(folder, output, absent))
-      throw InvalidInput(fmt::format("{}: holds the tables that are imported, {} among them; give another folder with -o",
-                                     output.string(), file.filename().string()));
+      throw InvalidInput(
+          fmt::format("{}: holds the tables that are imported, {} among them; give another folder with -o",
+                      output.string(), file.filename().string()));
   }
 }
 
@@ -83,8 +84,8 @@ std::vector<ForeignTest> read_foreign(const Mapping& mapping, const Execution& e
   std::vector<ForeignTest> tests;
   for (const TestMapping& test : mapping.tests) {
     if (execution.stop.stop_requested()) throw Interrupted("interrupted; nothing was written");
-    tests.push_back(
-        {test, test.series ? read_series(mapping, test) : read_particle_rows(mapping, test, {.stop = execution.stop})});
+    tests.push_back({test, test.series ? read_series(mapping, test)
+                                       : read_particle_rows(mapping, test, {.report = {}, .stop = execution.stop})});
   }
   return tests;
 }
@@ -101,7 +102,7 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
   record.path = path_of(mapping, test.mapping, foreign);
   complete(record.rows, record.path, record.packing);
   check_contradictions(record.rows, record.path, record.packing, foreign.place);  // of what was given
-  const Moved moved = move_onto(record.path, test.mapping.path_tolerance, record.rows);
+  const Moved moved = move_onto(record.path, record.rows);
   if (moved.farthest > test.mapping.path_tolerance)
     throw InvalidInput(fmt::format(
         "{}: the strain is {:.3g} off {}, more than path_tolerance, {:g}; correct the path, or leave it "
@@ -109,9 +110,10 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
         foreign.place(moved.row, "strain"), moved.farthest, path_text(record.path), test.mapping.path_tolerance));
   complete(record.rows, record.path, record.packing);
   check_series(record.rows, record.path, record.packing, foreign.place);
-  result.says = {fmt::format("{} rows", record.rows.size()), fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
-                 fmt::format("rows moved onto it by {:.2g} at most, tolerance {:g}", moved.farthest,
-                             test.mapping.path_tolerance)};
+  result.says = {
+      fmt::format("{} rows", record.rows.size()),
+      fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),
+      fmt::format("rows moved onto it by {:.2g} at most, tolerance {:g}", moved.farthest, test.mapping.path_tolerance)};
   result.provenance = foreign.provenance;
   result.provenance["path"] = {{"given", !test.mapping.segments.empty()},
                                {"tolerance", test.mapping.path_tolerance},

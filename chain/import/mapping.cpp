@@ -35,7 +35,8 @@ ColumnChoice column_from(const Json& json) {
 SeriesMapping series_from(const Json& json, const fs::path& folder) {
   SeriesMapping series;
   if (json.contains("file")) series.file = folder / json["file"].get<std::string>();
-  if (json.contains("delimiter")) series.delimiter = value_of<Delimiter>(json["delimiter"].get<std::string>(), "delimiter");
+  if (json.contains("delimiter"))
+    series.delimiter = value_of<Delimiter>(json["delimiter"].get<std::string>(), "delimiter");
   series.array = json.value("array", "");
   series.names = json.value("names", std::vector<std::string>{});
   const Json columns = json.value("columns", Json::object());
@@ -89,9 +90,10 @@ std::map<std::string, PackingInfo> packings_from(const Json& document, const std
     const PackingInfo packing = packing_from(item.value(), ++place, where);
     const auto [other, fresh] = seeds.try_emplace(packing.seed, item.key());
     if (!fresh)
-      throw InvalidInput(fmt::format("{}.seed: {} is that of packings.{}, too; packings are told apart by it, give "
-                                     "each its own",
-                                     where, packing.seed, one_line(other->second, 60)));
+      throw InvalidInput(
+          fmt::format("{}.seed: {} is that of packings.{}, too; packings are told apart by it, give "
+                      "each its own",
+                      where, packing.seed, one_line(other->second, 60)));
     packings[item.key()] = packing;
   }
   return packings;
@@ -102,8 +104,8 @@ std::optional<PackingInfo> packing_of(const Json& test, const std::map<std::stri
   if (!test.contains("packing")) {
     if (packings.empty()) return std::nullopt;
     if (packings.size() == 1) return packings.begin()->second;
-    throw InvalidInput(fmt::format("{}: misses the key 'packing'; give the name of one of the {} packings", where,
-                                   packings.size()));
+    throw InvalidInput(
+        fmt::format("{}: misses the key 'packing'; give the name of one of the {} packings", where, packings.size()));
   }
   const auto found = packings.find(test["packing"].get<std::string>());
   if (found == packings.end())
@@ -127,14 +129,13 @@ TestMapping test_from(const Json& document, const Json& json, const std::map<std
       test.branch = branch_from_json(path["initial"]);
     }
   }
-  test.path_tolerance =
-      json.value("path_tolerance", document.value("path_tolerance", TestMapping{}.path_tolerance));
+  test.path_tolerance = json.value("path_tolerance", document.value("path_tolerance", TestMapping{}.path_tolerance));
   const Json series = merged(document, json, "series");
   test.particles = merged(document, json, "particles");
   if (series.is_null() == test.particles.is_null())
-    throw InvalidInput(fmt::format("{}: {}", where,
-                                   series.is_null() ? "misses its data; give series or particles"
-                                                    : "has series and particles; give one of them"));
+    throw InvalidInput(fmt::format(
+        "{}: {}", where,
+        series.is_null() ? "misses its data; give series or particles" : "has series and particles; give one of them"));
   if (!series.is_null()) test.series = series_from(series, mapping.folder);
   return test;
 }
@@ -155,18 +156,20 @@ Mapping read_mapping(const fs::path& file) {
     const std::string place = fmt::format("tests[{}]", i);
     mapping.tests.push_back(test_from(document, document["tests"][i], packings, mapping, place));
     if (!names.insert(mapping.tests.back().name).second)
-      throw InvalidInput(fmt::format("{}: {}.name: '{}' is given twice; rename one", mapping.name, place,
-                                     mapping.tests.back().name));
+      throw InvalidInput(
+          fmt::format("{}: {}.name: '{}' is given twice; rename one", mapping.name, place, mapping.tests.back().name));
   }
   return mapping;
 }
 
 void require_packing(const Mapping& mapping, const TestMapping& test) {
   const auto misses = [&](const char* key, const char* what) {
-    throw InvalidInput(fmt::format("{}: the packing of test {} misses the key '{}'; {}", mapping.name, test.name, key, what));
+    throw InvalidInput(
+        fmt::format("{}: the packing of test {} misses the key '{}'; {}", mapping.name, test.name, key, what));
   };
   if (!test.packing) misses("packings", "give it with the number of particles and what makes P* of a stress");
-  if (test.packing->particles == 0) misses("particles", "give their number, of a sample of soil its order of magnitude");
+  if (test.packing->particles == 0)
+    misses("particles", "give their number, of a sample of soil its order of magnitude");
   if (test.packing->mean_radius == 0)
     misses("mean_radius", "give it with stiffness, or stress_unit, k/(2<r>) in Pa, or \"dimensionless\": true");
   if (test.packing->stiffness == 0) misses("stiffness", "give k in kg/s^2, or stress_unit instead of both");

@@ -57,10 +57,10 @@ struct TestMapping {
 };
 
 struct Mapping {
-  std::string name;               ///< of the file, for messages
-  std::filesystem::path folder;   ///< that other files are relative to
-  std::string sha256;             ///< of the file
-  std::string source;             ///< whose data it is
+  std::string name;              ///< of the file, for messages
+  std::filesystem::path folder;  ///< that other files are relative to
+  std::string sha256;            ///< of the file
+  std::string source;            ///< whose data it is
   std::vector<TestMapping> tests;
 };
 

@@ -47,7 +47,8 @@ class SeriesImport {
     if (sources_.has_tensor("stress")) {
       o.stress.tensor = sources_.tensor(row, "stress");
     } else {
-      const double p = sources_.value(row, sources_.stress_column()), q = sources_.has("q") ? sources_.value(row, "q") : 0;
+      const double p = sources_.value(row, sources_.stress_column()),
+                   q = sources_.has("q") ? sources_.value(row, "q") : 0;
       o.stress.tensor = triaxial(p + 2 * q / 3, p - q / 3);
     }
     o.fabric.tensor = sources_.has_tensor("fabric") ? sources_.tensor(row, "fabric")
@@ -76,10 +77,11 @@ class SeriesImport {
     const Positive seen = sum < 0 ? Positive::tension : Positive::compression;
     stress_sign_ = how_.stress_sign.value_or(seen);
     if (stress_sign_ != seen && sum != 0)
-      throw InvalidInput(fmt::format(
-          "{}: the mean stress is {:.4g} Pa with {} declared positive, but grains only push: stress sign? declare \"sign\": "
-          "{{\"stress\": \"{}\"}}, or is it another column?",
-          sources_.place(row, sources_.stress_column()), most, to_string(stress_sign_), to_string(seen)));
+      throw InvalidInput(
+          fmt::format("{}: the mean stress is {:.4g} Pa with {} declared positive, but grains only push: stress sign? "
+                      "declare \"sign\": "
+                      "{{\"stress\": \"{}\"}}, or is it another column?",
+                      sources_.place(row, sources_.stress_column()), most, to_string(stress_sign_), to_string(seen)));
     if (!how_.stress_sign) note(fmt::format("stress: {} is positive, since grains only push", to_string(seen)));
     if (stress_sign_ == Positive::compression) return;
     for (Observation& o : rows_) o.stress.tensor *= -1;
@@ -105,19 +107,20 @@ class SeriesImport {
     const double volume = volume_strain(row) - volume_strain(0);
     const bool evident = std::abs(most) >= kTellingVolume && volume != 0;
     if (!evident && !how_.strain_sign)
-      throw InvalidInput(fmt::format("{}: the sign of the strain is neither declared nor evident, since {}; give \"sign\": "
-                                     "{{\"strain\": \"compression\"}} or \"tension\" in {}",
-                                     sources_.table(),
-                                     sources_.tells_volume() ? "the volume hardly changes" : "nothing else tells the volume",
-                                     sources_.mapping()));
+      throw InvalidInput(fmt::format(
+          "{}: the sign of the strain is neither declared nor evident, since {}; give \"sign\": "
+          "{{\"strain\": \"compression\"}} or \"tension\" in {}",
+          sources_.table(), sources_.tells_volume() ? "the volume hardly changes" : "nothing else tells the volume",
+          sources_.mapping()));
     const Positive seen = (volume > 0) == (most > 0) ? Positive::compression : Positive::tension;
     strain_sign_ = how_.strain_sign.value_or(seen);
     if (evident && strain_sign_ != seen)
-      throw InvalidInput(fmt::format(
-          "{}: the volume fraction goes from {:.6g} to {:.6g} while the volumetric strain changes by {:+.4g} with {} declared "
-          "positive: strain sign? declare \"sign\": {{\"strain\": \"{}\"}}, or is it another column?",
-          sources_.place(row, sources_.strain_column()), rows_[0].nu, rows_[row].nu, volume, to_string(strain_sign_),
-          to_string(seen)));
+      throw InvalidInput(
+          fmt::format("{}: the volume fraction goes from {:.6g} to {:.6g} while the volumetric strain changes by "
+                      "{:+.4g} with {} declared "
+                      "positive: strain sign? declare \"sign\": {{\"strain\": \"{}\"}}, or is it another column?",
+                      sources_.place(row, sources_.strain_column()), rows_[0].nu, rows_[row].nu, volume,
+                      to_string(strain_sign_), to_string(seen)));
     if (!how_.strain_sign) note(fmt::format("strain: {} is positive, by the volume fraction", to_string(seen)));
   }
 
@@ -126,8 +129,9 @@ class SeriesImport {
     const double e = strain_sign_ == Positive::tension ? given : -given;
     if (!how_.nominal) return e;
     if (!(e > -1))
-      throw InvalidInput(fmt::format("{}: the nominal strain {:.4g} leaves no length; is it in per cent, or logarithmic?",
-                                     sources_.place(row, sources_.strain_column()), given));
+      throw InvalidInput(
+          fmt::format("{}: the nominal strain {:.4g} leaves no length; is it in per cent, or logarithmic?",
+                      sources_.place(row, sources_.strain_column()), given));
     return std::log1p(e);
   }
 
@@ -137,10 +141,11 @@ class SeriesImport {
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
         if (i != j && how_.nominal && given(i, j) != 0)
-          throw InvalidInput(fmt::format("{}: nominal strain with shear says too little of the rotation; give logarithmic strain",
-                                         sources_.place(row, "strain_xy")));
-        strain(i, j) = i == j ? logarithmic(row, given(i, j))
-                              : logarithmic(row, given(i, j)) / (how_.engineering_shear ? 2 : 1);
+          throw InvalidInput(
+              fmt::format("{}: nominal strain with shear says too little of the rotation; give logarithmic strain",
+                          sources_.place(row, "strain_xy")));
+        strain(i, j) =
+            i == j ? logarithmic(row, given(i, j)) : logarithmic(row, given(i, j)) / (how_.engineering_shear ? 2 : 1);
       }
     }
     return strain;
@@ -154,13 +159,15 @@ class SeriesImport {
         const std::string edge{'L', static_cast<char>('x' + i)};
         const double length = sources_.value(row, edge);
         if (!(length > 0))
-          throw InvalidInput(fmt::format("{}: {} is no length; is it another column?", sources_.place(row, edge), length));
+          throw InvalidInput(
+              fmt::format("{}: {} is no length; is it another column?", sources_.place(row, edge), length));
         log(i) = std::log(length);
       }
       return log.asDiagonal();
     }
     if (sources_.has("eps_a")) {
-      const double a = logarithmic(row, sources_.value(row, "eps_a")), v = logarithmic(row, sources_.value(row, "eps_v"));
+      const double a = logarithmic(row, sources_.value(row, "eps_a")),
+                   v = logarithmic(row, sources_.value(row, "eps_v"));
       return triaxial(a, (v - a) / 2);
     }
     const double v = sources_.has("eps_v") ? logarithmic(row, sources_.value(row, "eps_v")) : -std::log(rows_[row].nu);
@@ -188,8 +195,8 @@ class SeriesImport {
 ForeignRows read_series(const Mapping& mapping, const TestMapping& test) {
   require_packing(mapping, test);
   if (test.series->file.empty())
-    throw InvalidInput(fmt::format("{}: test {}: series: misses the key 'file'; give a table, relative to {}", mapping.name,
-                                   test.name, mapping.name));
+    throw InvalidInput(fmt::format("{}: test {}: series: misses the key 'file'; give a table, relative to {}",
+                                   mapping.name, test.name, mapping.name));
   return SeriesImport(mapping, test).read();
 }
 

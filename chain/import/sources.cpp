@@ -68,14 +68,14 @@ void Sources::take(const std::map<std::string, ColumnChoice>& columns, const std
       for (const Quantity& quantity : quantities()) {
         if (known.empty() || known.back() != quantity.name) known.push_back(quantity.name);
       }
-      throw InvalidInput(fmt::format("{}: series.columns.{}: is no quantity; give some of {}", where, one_line(name, 60),
-                                     fmt::join(known, ", ")));
+      throw InvalidInput(fmt::format("{}: series.columns.{}: is no quantity; give some of {}", where,
+                                     one_line(name, 60), fmt::join(known, ", ")));
     }
     const ForeignColumn* column = find_column(choice);
     for (const auto& [other, source] : sources_) {
       if (source.column == column)
-        throw InvalidInput(fmt::format("{}: series.columns: '{}' stands for {} and for {}; name one column for each", where,
-                                       shown(*column), other, name));
+        throw InvalidInput(fmt::format("{}: series.columns: '{}' stands for {} and for {}; name one column for each",
+                                       where, shown(*column), other, name));
     }
     sources_[name] = {column, 1, choice.unit.value_or(""), choice.unit.has_value()};
   }
@@ -128,23 +128,27 @@ void Sources::require_all(const SeriesMapping& how) const {
   } else if (has_edges()) {
     for (const char* edge : {"Lx", "Ly", "Lz"}) {
       if (!has(edge))
-        refuse(fmt::format("misses the column of {}, where other edges are given; name it under columns in {}", edge, mapping_));
+        refuse(fmt::format("misses the column of {}, where other edges are given; name it under columns in {}", edge,
+                           mapping_));
     }
   } else if (!(has("eps_a") && has("eps_v")) && !(how.isotropic && (tells_volume() || has("eps_v")))) {
-    refuse(fmt::format("misses the strain; name columns of strain_xx, strain_yy, strain_zz, or Lx, Ly, Lz, or eps_a and "
-                       "eps_v in {} (or say \"isotropic\": true where the volume alone says it)",
-                       mapping_));
+    refuse(
+        fmt::format("misses the strain; name columns of strain_xx, strain_yy, strain_zz, or Lx, Ly, Lz, or eps_a and "
+                    "eps_v in {} (or say \"isotropic\": true where the volume alone says it)",
+                    mapping_));
   }
   if (has_tensor("stress"))
     require_tensor("stress", 3);
   else if (!has("p") && !has("P_star"))
-    refuse(fmt::format("misses the stress; name columns of stress_xx, stress_yy, stress_zz, or p and q in {}", mapping_));
+    refuse(
+        fmt::format("misses the stress; name columns of stress_xx, stress_yy, stress_zz, or p and q in {}", mapping_));
   else if (!has("q") && !how.isotropic)
     refuse(fmt::format("misses q beside the mean stress; name its column in {}, or say \"isotropic\": true", mapping_));
   if (!tells_volume() && !how.nu_start)
-    refuse(fmt::format("misses the volume fraction; name a column of nu, void_ratio or porosity in {}, or give nu_start, "
-                       "that of the first row",
-                       mapping_));
+    refuse(
+        fmt::format("misses the volume fraction; name a column of nu, void_ratio or porosity in {}, or give nu_start, "
+                    "that of the first row",
+                    mapping_));
   if (has_tensor("fabric")) require_tensor("fabric", 6);
 }
 
@@ -178,8 +182,8 @@ double Sources::value(std::size_t row, const std::string& quantity, bool may_be_
   const double number = column.values[row];
   if (std::isfinite(number)) return number * found->second.factor;
   if (!column.bad.empty() && row == column.bad_row)
-    throw InvalidInput(fmt::format("{}: '{}' is no number; write it like 1.5e-3, with a decimal point", place(row, quantity),
-                                   column.bad));
+    throw InvalidInput(fmt::format("{}: '{}' is no number; write it like 1.5e-3, with a decimal point",
+                                   place(row, quantity), column.bad));
   if (may_be_undefined && std::isnan(number)) return kUndefined;
   throw InvalidInput(fmt::format("{}: is {}; remove the row or repeat the test", place(row, quantity),
                                  std::isnan(number) ? "undefined" : "infinite"));
@@ -221,7 +225,8 @@ std::string Sources::place_of_ours(std::size_t row, const std::string& column) c
     if (column.starts_with(tensor) && has(component_of(tensor, 0))) return place(row, component_of(tensor, 0));
   }
   if (column.starts_with("eps") || column.starts_with("strain")) return place(row, strain_column());
-  if (column == "nu") return place(row, has("void_ratio") ? "void_ratio" : has("porosity") ? "porosity" : strain_column());
+  if (column == "nu")
+    return place(row, has("void_ratio") ? "void_ratio" : has("porosity") ? "porosity" : strain_column());
   if (column.starts_with("F_")) return place(row, "fabric_xx");
   if (column == "C_star") return place(row, "C");
   return place(row, column == "time" || column == "segment" ? "" : stress_column());
@@ -239,10 +244,11 @@ void Sources::describe(Positive stress, Positive strain, ForeignRows& foreign) c
     }
     const Quantity& quantity = *find_quantity(source->first);
     const bool of_stress = quantity.kind == UnitKind::stress || quantity.name == "P_star";
-    foreign.columns.push_back({column.title, fmt::format("{} ({})", quantity.name, quantity.meaning), source->second.unit,
-                               of_stress                             ? to_string(stress)
+    foreign.columns.push_back({column.title, fmt::format("{} ({})", quantity.name, quantity.meaning),
+                               source->second.unit,
+                               of_stress                           ? to_string(stress)
                                : quantity.kind == UnitKind::strain ? to_string(strain)
-                                                                     : ""});
+                                                                   : ""});
   }
   foreign.notes.insert(foreign.notes.end(), table_->left_out.begin(), table_->left_out.end());
   for (const ForeignColumn* column : aside) foreign.extra.titles.push_back(column->title);

@@ -61,7 +61,7 @@ class Sources {
 
   std::string mapping_;  // name of its file
   std::shared_ptr<const ForeignTable> table_;
-  std::string sha256_;  // of its file
+  std::string sha256_;                     // of its file
   std::map<std::string, Source> sources_;  // by quantity
 };
 

@@ -14,18 +14,35 @@ namespace grainlaw::chain {
 namespace {
 
 constexpr double kSameDirection = 0.05;  // angle up to which a direction passes for a mode that its rows allow, too
-constexpr double kEqual = 1e-24;  // squares of distances that differ by rounding alone
+constexpr double kEqual = 1e-24;         // squares of distances that differ by rounding alone
 constexpr std::size_t kMostWork = 200000000;  // rows times segments
 
 using Tensor = Eigen::Matrix3d;
 
 double component_along(const Tensor& strain, const Tensor& D) { return strain.cwiseProduct(D).sum() / D.squaredNorm(); }
 
-/// Distance of `strain` from the piece of line from `a` to `b`.
-double distance(const Tensor& strain, const Tensor& a, const Tensor& b) {
-  const Tensor D = b - a;
-  const double e = D.squaredNorm() > 0 ? std::clamp(component_along(strain - a, D), 0.0, 1.0) : 0;
-  return (strain - a - e * D).norm();
+/// The row that misses the piece of line from row `a` to row `b` by most and by more than `tolerance`, or from which on rows go back
+/// along it by that much; `a` when there is none.
+std::size_t worst_row(const std::vector<Observation>& rows, std::size_t a, std::size_t b, double tolerance) {
+  const Tensor from = rows[a].strain.tensor, D = rows[b].strain.tensor - from;
+  double worst = tolerance, farthest = 0;
+  std::size_t corner = a, turn = a;
+  for (std::size_t i = a + 1; i < b; ++i) {
+    const Tensor along = rows[i].strain.tensor - from;
+    const double e = D.squaredNorm() > 0 ? std::clamp(component_along(along, D), 0.0, 1.0) : 0;
+    if (const double off = (along - e * D).norm(); off > worst) {
+      worst = off;
+      corner = i;
+    }
+    if (const double back = (farthest - e) * D.norm(); back > worst) {
+      worst = back;
+      corner = turn;
+    }
+    if (e <= farthest) continue;
+    farthest = e;
+    turn = i;
+  }
+  return corner;
 }
 
 /// Rows that are corners between `first` and `last`, without them, appended in order.
@@ -35,19 +52,13 @@ void find_corners(const std::vector<Observation>& rows, std::size_t first, std::
   while (!open.empty()) {
     const auto [a, b] = open.back();
     open.pop_back();
-    double farthest = tolerance;
-    std::size_t corner = a;
-    for (std::size_t i = a + 1; i < b; ++i) {
-      const double off = distance(rows[i].strain.tensor, rows[a].strain.tensor, rows[b].strain.tensor);
-      if (off <= farthest) continue;
-      farthest = off;
-      corner = i;
-    }
+    const std::size_t corner = worst_row(rows, a, b, tolerance);
     if (corner == a) continue;
     if (corners.size() == kMaxFoundSegments)
-      throw InvalidInput(fmt::format("the strains turn more than {} times; give a path, a larger path_tolerance (now {:g}), or "
-                                     "smooth them",
-                                     kMaxFoundSegments, tolerance));
+      throw InvalidInput(
+          fmt::format("the strains turn more than {} times; give a path, a larger path_tolerance (now {:g}), or "
+                      "smooth them",
+                      kMaxFoundSegments, tolerance));
     corners.push_back(corner);
     open.emplace_back(a, corner);
     open.emplace_back(corner, b);
@@ -91,7 +102,8 @@ PathSegment straight(const std::vector<Observation>& rows, std::size_t first, st
   double least = tolerance;
   for (const Candidate& candidate : candidates_of(step)) {
     const double norm = candidate.D.norm();
-    if (!(norm > 0) || !(candidate.D.cwiseProduct(step).sum() > std::cos(kSameDirection) * norm * step.norm())) continue;
+    if (!(norm > 0) || !(candidate.D.cwiseProduct(step).sum() > std::cos(kSameDirection) * norm * step.norm()))
+      continue;
     const double off = farthest(candidate.D);
     // the traceless tensor has six components to meet the rows with where a mode has none: it comes last
     if (candidate.mode == Mode::tensor ? best.mode != Mode::tensor || off > tolerance : off > least) continue;
@@ -99,7 +111,8 @@ PathSegment straight(const std::vector<Observation>& rows, std::size_t first, st
     best = candidate;
   }
   if (best.mode == Mode::tensor) best.D /= best.D.norm();
-  const double length = component_along(step, best.D), shear = deviatoric_norm(best.D), volume = std::abs(best.D.trace());
+  const double length = component_along(step, best.D), shear = deviatoric_norm(best.D),
+               volume = std::abs(best.D.trace());
   PathSegment segment{best.mode, {best.D}, ExtentKind::eps_dev, shear * length};
   if (shear < volume) {
     segment.extent_kind = ExtentKind::eps_vol;
@@ -170,9 +183,10 @@ std::vector<PathSegment> found_segments(const std::vector<Observation>& rows, do
   double reach = 0;
   for (const Observation& row : rows) reach = std::max(reach, row.strain.tensor.norm());
   if (!(reach > tolerance))
-    throw InvalidInput(fmt::format("the strain never exceeds {:.3g}, which path_tolerance, {:g}, takes for none; are its units "
-                                   "right?",
-                                   reach, tolerance));
+    throw InvalidInput(
+        fmt::format("the strain never exceeds {:.3g}, which path_tolerance, {:g}, takes for none; are its units "
+                    "right?",
+                    reach, tolerance));
   std::vector<std::size_t> corners;
   find_corners(rows, 0, rows.size() - 1, tolerance, corners);
   corners.push_back(rows.size() - 1);
@@ -214,7 +228,8 @@ std::string path_text(const Path& path) {
   std::vector<std::string> parts;
   for (const PathSegment& segment : path.segments) {
     const Tensor& D = segment.direction.tensor;
-    parts.push_back(fmt::format("{} ({:.4g} {:.4g} {:.4g}{}) to {} {:.6g}", to_string(segment.mode), D(0, 0), D(1, 1), D(2, 2),
+    parts.push_back(fmt::format("{} ({:.4g} {:.4g} {:.4g}{}) to {} {:.6g}", to_string(segment.mode), D(0, 0), D(1, 1),
+                                D(2, 2),
                                 D.isDiagonal() ? "" : fmt::format(" {:.4g} {:.4g} {:.4g}", D(1, 2), D(0, 2), D(0, 1)),
                                 to_string(segment.extent_kind), segment.extent));
   }

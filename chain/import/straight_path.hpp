@@ -18,8 +18,8 @@ std::vector<PathSegment> found_segments(const std::vector<Observation>& rows, do
 
 /// How far rows were moved.
 struct Moved {
-  double farthest = 0;      ///< [-]
-  std::size_t row = 0;      ///< which that was, from 0
+  double farthest = 0;  ///< [-]
+  std::size_t row = 0;  ///< which that was, from 0
 };
 
 /// Gives each row its segment, and strain and volume fraction of its place there: the nearest that goes forward from row to row, by

@@ -6,14 +6,17 @@
 
 namespace grainlaw::dem {
 
-InvalidInput ForeignFrame::refusal(const std::string& why, std::size_t row, const std::string& column) const {
-  std::string where = file.string();
-  if (!place.empty()) where += ": " + place;
+std::string ForeignFrame::where(std::size_t row) const {
+  std::string text = file.string();
+  if (!place.empty()) text += ": " + place;
   if (row > 0) {
-    where += table.first_line > 0 ? fmt::format(": line {}", table.first_line + row - 1) : fmt::format(": row {}", row);
+    text += table.first_line > 0 ? fmt::format(": line {}", table.first_line + row - 1) : fmt::format(": row {}", row);
   }
-  if (!column.empty()) where += ", column " + in_quotes(column);
-  return InvalidInput(where + ": " + why);
+  return text;
+}
+
+InvalidInput ForeignFrame::refusal(const std::string& why, std::size_t row, const std::string& column) const {
+  return InvalidInput(where(row) + (column.empty() ? "" : ", column " + in_quotes(column)) + ": " + why);
 }
 
 std::vector<std::string> component_titles(const std::string& name, std::size_t components) {

@@ -35,6 +35,9 @@ struct ForeignFrame {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();        ///< corner of the cell
   NumberTable table;
 
+  /// "FILE: step 1000: line 17", for messages; row 0: none in particular.
+  std::string where(std::size_t row = 0) const;
+
   /// What is wrong with it, or with a row (0: none in particular) and a column of it, as one line of text.
   InvalidInput refusal(const std::string& why, std::size_t row = 0, const std::string& column = "") const;
 };

@@ -94,7 +94,7 @@ void read_cells(const Json& json, const fs::path& folder, ParticleRequest& reque
       edges[a] = value(lengths[a]) * request.length;
       edges[a + 3] = tilts[a].empty() ? 0 : value(tilts[a]) * request.length;
     }
-    request.cells.push_back(cell_of(edges, frame.refusal("", row + 1).what()));
+    request.cells.push_back(cell_of(edges, frame.where(row + 1)));
     if (!time.empty()) request.times.push_back(value(time) * request.time);
   }
 }

@@ -76,7 +76,8 @@ class SeriesOfFrames {
     const Packing& p = frame.packing;
     Observation row;
     row.time = frame.time;
-    set_averages(row, request_.contacts ? given(frame) : by_law(frame, L, row), p, request_.stiffness, {}, false);
+    set_averages(row, request_.contacts ? given(frame) : by_law(frame, L, row), p, request_.stiffness,
+                 Deviator<double>::Zero(), false);
     const double P = row.stress.tensor.trace() / 3;
     if (!std::isnan(request_.density)) {
       if (frame.has_velocities) {
@@ -87,7 +88,7 @@ class SeriesOfFrames {
     }
     set_path(row, stretch(p.H), frame.source);
     series_.rows.push_back(row);
-    series_.places.push_back(frame.source.refusal("").what());
+    series_.places.push_back(frame.source.where());
   }
 
   ContactSums given(const Frame& frame) {

@@ -249,7 +249,7 @@ class VtkXml : public ForeignReader {
     }
     const std::uint64_t blocks = header(), block = header(), last = header();
     if (size == 0 && blocks == 0) return data;
-    if (size > kMostInflated * bytes.most_left() || blocks == 0 || blocks > size || block > size ||
+    if (size > kMostInflated * bytes.most_left() || blocks == 0 || blocks > size || (blocks > 1 && block > size) ||
         (last > 0 ? (blocks - 1) * block + last : blocks * block) != size)
       throw cut();
     std::vector<std::uint64_t> packed(blocks);

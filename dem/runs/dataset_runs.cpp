@@ -130,10 +130,19 @@ std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std:
   return tests;
 }
 
+void make_runs(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,
+               RunCounts& counts) {
+  run_jobs(jobs_for(tests, store, execution, counts), execution.threads, execution.watch, execution.stop);
+}
+
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
                     const RunStore& store, const Execution& execution, RunCounts& counts) {
-  run_jobs(jobs_for(tests, store, execution, counts), execution.threads, execution.watch, execution.stop);
+  make_runs(tests, store, execution, counts);
+  return collect_runs(tests, spec, folder, store, execution);
+}
 
+Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
+                     const RunStore& store, const Execution& execution) {
   std::set<std::string> stale = series_listed(folder), stale_probes = stale;
   Dataset dataset;
   dataset.spec = spec;

@@ -36,14 +36,22 @@ std::vector<std::uint64_t> new_seeds(const Spec& spec, const PathFile& path, con
 std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std::vector<std::uint64_t>& seeds,
                               const std::string& name);
 
-/// What run_planned did.
+/// What make_runs did.
 struct RunCounts {
   std::size_t runs = 0;   ///< preparations and tests
   std::size_t found = 0;  ///< of those, finished before
 };
 
-/// Runs what is not in the store yet, copies the series to `folder` and writes dataset.json there last; series that an
-/// earlier dataset.json listed and this one does not are removed. Returns what read_dataset would read there.
+/// Runs what is not in the store yet; nothing else changes.
+void make_runs(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,
+               RunCounts& counts);
+
+/// Copies the series of finished runs to `folder` and writes dataset.json there last; series that an earlier dataset.json listed
+/// and this one does not are removed. Returns what read_dataset would read there.
+Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, const std::filesystem::path& folder,
+                     const RunStore& store, const Execution& execution);
+
+/// Both.
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const std::filesystem::path& folder,
                     const RunStore& store, const Execution& execution, RunCounts& counts);
 

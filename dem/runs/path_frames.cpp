@@ -40,30 +40,26 @@ bool PathFrames::take_up() {
   }
 }
 
-void PathFrames::keep_start(const State& state, const DriveOptions& drive) {
-  places_.clear();
-  State start = state;
-  start.time = 0;
-  start.step = 0;
-  Eigen::Vector3d L = Eigen::Vector3d::Zero();
-  if (!segments_.empty() && drive.quasi_static_step == 0)
-    L = motion_at(make_drive(segments_[0], drive, state.packing.H), 0).L.diagonal();
-  keep(std::move(start), {0, 0, 0, 0, L[0], L[1], L[2]});
+StepObserver PathFrames::at_start() {
+  return [this](Stepper& stepper, int segment, double e) {
+    places_.clear();
+    keep(stepper, segment, e);
+  };
 }
 
 StepObserver PathFrames::observer() {
   return [this](Stepper& stepper, int segment, double e) {
     const double length = segments_[static_cast<std::size_t>(segment)].length;
     const int k = static_cast<int>(places_.size()) - segment * count_;  // of the segment, the next one
-    if (k > count_ || e < (k == count_ ? length : length * k / count_)) return;
-    const Eigen::Vector3d L = stepper.motion().L.diagonal();
-    const State& state = stepper.state();
-    keep(state, {static_cast<int>(places_.size()), state.time, segment, e, L[0], L[1], L[2]});
+    if (k <= count_ && e >= (k == count_ ? length : length * k / count_)) keep(stepper, segment, e);
   };
 }
 
-void PathFrames::keep(State state, const FramePlace& place) {
+void PathFrames::keep(Stepper& stepper, int segment, double e) {
+  State state = stepper.state();
   state.digest = digest_;
+  const Eigen::Vector3d L = stepper.motion().L.diagonal();
+  const FramePlace place{static_cast<int>(places_.size()), state.time, segment, e, L[0], L[1], L[2]};
   write_state(folder_ / frame_file(place.frame), state);
   places_.push_back(place);
   write_durably(folder_ / kFramesFile, table_text(places_));

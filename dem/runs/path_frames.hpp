@@ -42,14 +42,12 @@ class PathFrames {
   /// Takes up what an earlier session left; false when that is damaged.
   bool take_up();
 
-  /// Keeps the state that the test starts from.
-  void keep_start(const State& state, const DriveOptions& drive);
-
-  /// For the run; must not outlive the frames.
+  /// For the start of the run, and for its steps; must not outlive the frames.
+  StepObserver at_start();
   StepObserver observer();
 
  private:
-  void keep(State state, const FramePlace& place);
+  void keep(Stepper& stepper, int segment, double e);
 
   std::filesystem::path folder_;
   int count_;

@@ -35,6 +35,12 @@ void remove_scratch(const fs::path& run) {
   for (const fs::path& file : scratch) fs::remove(file, ignored);
 }
 
+/// Of a run.json without its own digest.
+std::string digest_of(Json record) {
+  record.erase("sha256");
+  return sha256(record.dump());
+}
+
 }  // namespace
 
 std::string run_key(const Json& request) {
@@ -57,7 +63,12 @@ RunStore::RunStore(const fs::path& parent, const std::string& name) : root_(make
   }
 }
 
-RunStore::~RunStore() { close(lock_); }
+RunStore::~RunStore() {
+  std::error_code ignored;  // a store that nobody has put anything into leaves nothing
+  const auto entries = std::distance(fs::directory_iterator(root_, ignored), fs::directory_iterator());
+  if (!ignored && entries == 1 && fs::remove(root_ / ".lock", ignored)) fs::remove(root_, ignored);
+  close(lock_);
+}
 
 fs::path RunStore::folder(const std::string& key) const { return root_ / key; }
 
@@ -67,6 +78,7 @@ std::optional<Json> RunStore::find(const std::string& key) const {
   try {
     Json record = read_json(run / "run.json", JsonSource::own);
     if (record.at("key") != key) return std::nullopt;
+    if (record.at("format_version") != 1 && record.at("sha256") != digest_of(record)) return std::nullopt;
     for (const auto& file : record.at("files").items()) {
       if (!is_safe_name(file.key()) || sha256_of_file(run / file.key()) != file.value()) return std::nullopt;
     }
@@ -77,6 +89,16 @@ std::optional<Json> RunStore::find(const std::string& key) const {
   } catch (const Json::exception&) {
     return std::nullopt;
   }
+}
+
+std::optional<fs::path> RunStore::set_aside_damaged(const std::string& key) const {
+  const fs::path run = folder(key), aside = folder(key + ".damaged");
+  if (!fs::exists(run / "run.json") || find(key)) return std::nullopt;
+  std::error_code error;
+  fs::remove_all(aside, error);
+  fs::rename(run, aside, error);
+  if (error) throw Error(fmt::format("{}: is damaged and cannot be put aside: {}", run.string(), error.message()));
+  return run / "run.json";
 }
 
 fs::path RunStore::begin(const std::string& key) const {
@@ -91,7 +113,7 @@ fs::path RunStore::reopen(const std::string& key) const {
 
 void RunStore::finish(const std::string& key, const Json& request, const OrderedJson& record) const {
   const fs::path run = folder(key);
-  OrderedJson document{{"format", "grainlaw run"}, {"format_version", 1}, {"key", key}};
+  OrderedJson document{{"format", "grainlaw run"}, {"format_version", 2}, {"key", key}};
   for (const auto& item : record.items()) document[item.key()] = item.value();
   document["request"] = OrderedJson(request);
   OrderedJson& files = document["files"] = OrderedJson::object();
@@ -101,6 +123,7 @@ void RunStore::finish(const std::string& key, const Json& request, const Ordered
     if (!is_scratch(name)) sums[name] = sha256_of_file(entry.path());
   }
   for (const auto& [name, sum] : sums) files[name] = sum;
+  document["sha256"] = digest_of(Json::parse(json_text(document)));  // numbers as they are read back
   write_json(run / "run.json", document);
   remove_scratch(run);
 }

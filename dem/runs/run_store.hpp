@@ -24,7 +24,7 @@ inline constexpr const char* kProgress = "progress.json";  ///< what a preparati
 
 class RunStore {
  public:
-  /// Creates parent/name when absent and locks it until destruction. Throws Error when another process works there.
+  /// Creates parent/name when absent and locks it until destruction, when it is removed if still empty. Throws Error when another process works there.
   RunStore(const std::filesystem::path& parent, const std::string& name);
   ~RunStore();
   RunStore(const RunStore&) = delete;
@@ -36,13 +36,18 @@ class RunStore {
   /// beside a finished run are removed.
   std::optional<Json> find(const std::string& key) const;
 
+  /// Puts the folder of a finished run that find() does not accept aside as KEY.damaged, for whoever wants to look; returns its
+  /// run.json as it was, nothing when there is no such folder.
+  std::optional<std::filesystem::path> set_aside_damaged(const std::string& key) const;
+
   /// An empty folder for the run; what an unfinished or damaged run left there is removed.
   std::filesystem::path begin(const std::string& key) const;
 
   /// The folder of an unfinished run as it is, or an empty one.
   std::filesystem::path reopen(const std::string& key) const;
 
-  /// Writes run.json: {format, key, request, `record`'s keys, files: {name: SHA-256}}, then removes the scratch files.
+  /// Writes run.json: {format, key, request, `record`'s keys, files: {name: SHA-256}, sha256 of all these}, then removes the scratch
+  /// files.
   void finish(const std::string& key, const Json& request, const OrderedJson& record) const;
 
  private:

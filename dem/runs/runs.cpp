@@ -11,6 +11,7 @@
 #include "dem/runs/preparation_folder.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "model/files/fields_json.hpp"
+#include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
 #include "model/files/series_csv.hpp"
 #include "model/vocabulary/error.hpp"
@@ -77,6 +78,14 @@ Json request_of(const TestSetup& test) {
   return request;
 }
 
+/// The finished run; a damaged one is put aside and said to be.
+std::optional<Json> sound_run(const RunStore& store, const std::string& key, const ResumePolicy& policy) {
+  if (auto record = store.find(key)) return record;
+  if (const auto damaged = store.set_aside_damaged(key); damaged && policy.log)
+    policy.log(fmt::format("{}: damaged; put aside as {}.damaged, simulated again", damaged->string(), key));
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string preparation_key(const PreparationOptions& options) { return run_key(request_of(options)); }
@@ -96,7 +105,7 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
                         const RunControl& control) {
   const Json request = request_of(options);
   const std::string key = run_key(request);
-  if (auto record = store.find(key)) return *record;
+  if (auto record = sound_run(store, key, policy)) return *record;
   const Stopwatch stopwatch;
   const fs::path run = policy.resume ? store.reopen(key) : store.begin(key);
   const CheckpointFiles checkpoints(run, key, policy);
@@ -127,7 +136,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   const PreparationOptions& o = test.preparation;
   const Json request = request_of(test);
   const std::string key = run_key(request);
-  if (auto record = store.find(key)) return *record;
+  if (auto record = sound_run(store, key, policy)) return *record;
   const Stopwatch stopwatch;
   ElementTestOptions options;
   options.engine = o.engine;
@@ -159,13 +168,11 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
     to_frames(stepper, segment, e);
   };
   const StepObserver& on_step = probes && frames ? to_both : frames ? to_frames : to_probes;
-  State start;
-  if (!checkpoint) start = start_state(store, test, control);
-  if (!checkpoint && frames) frames->keep_start(start, options.drive);
   const ElementTest done =
       checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
                                          checkpoints.checkpointing())
-                 : run_element_test(start, segments, options, control, on_step, checkpoints.checkpointing());
+                 : run_element_test(start_state(store, test, control), segments, options, control, on_step,
+                                    checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
   write_series(folder / "series.csv", done.rows);
   std::vector<std::string> warnings = done.warnings;
   if (probes) {
@@ -191,7 +198,8 @@ Job preparation_job(const RunStore& store, const PreparationOptions& options, co
           [&store, &options, policy = policy_of(execution, name)](int threads, const RunControl& control) {
             PreparationOptions with_threads = options;
             with_threads.engine.threads = threads;
-            ensure_preparation(store, with_threads, policy, control);
+            without_empty_folders({store.folder(preparation_key(options))},
+                                  [&] { ensure_preparation(store, with_threads, policy, control); });
           }};
 }
 
@@ -201,7 +209,8 @@ Job test_job(const RunStore& store, const TestSetup& test, const std::string& na
           [&store, &test, policy = policy_of(execution, name)](int threads, const RunControl& control) {
             TestSetup with_threads = test;
             with_threads.preparation.engine.threads = threads;
-            ensure_test(store, with_threads, policy, control);
+            without_empty_folders({store.folder(test_key(test))},
+                                  [&] { ensure_test(store, with_threads, policy, control); });
           }};
 }
 

@@ -80,9 +80,7 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
   return names;
 }
 
-}  // namespace
-
-SimulationResult simulate(const TestFile& test, const fs::path& output, const Execution& execution) {
+SimulationResult simulate_into(const TestFile& test, const fs::path& output, const Execution& execution) {
   make_output_folder(output);
   const RunStore store(output, "runs");
   run_jobs_of(test, store, execution);
@@ -117,6 +115,12 @@ SimulationResult simulate(const TestFile& test, const fs::path& output, const Ex
   write_json(output / "simulation.json", summary);
   for (const std::string& warning : simulation.warnings) execution.watch.log("warning: " + warning);
   return simulation;
+}
+
+}  // namespace
+
+SimulationResult simulate(const TestFile& test, const fs::path& output, const Execution& execution) {
+  return without_empty_folders({output}, [&] { return simulate_into(test, output, execution); });
 }
 
 }  // namespace grainlaw::dem

@@ -31,9 +31,10 @@ void check_test(const TestRecord& test, Role role) {
   }
   for (std::size_t k = 0; k < test.path.segments.size(); ++k) {
     if (!test.path.segments[k].spin.isZero(0)) {
-      refuse(test, fmt::format("segments[{}] spins, and the fit's laws know no rotation; give the test another role than "
-                               "calibration, its strain as a rate_tensor, or predict it",
-                               k));
+      refuse(test,
+             fmt::format("segments[{}] spins, and the fit's laws know no rotation; give the test another role than "
+                         "calibration, its strain as a rate_tensor, or predict it",
+                         k));
     }
   }
   check_series(test.rows, test.path, test.packing, "test " + test.name);

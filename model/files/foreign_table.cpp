@@ -84,7 +84,8 @@ class TextTable {
       take(trimmed(line));
     }
     if (table_.rows() == 0)
-      throw InvalidInput(fmt::format("{}: has no rows of numbers; give a table with one row for each instant", table_.name));
+      throw InvalidInput(
+          fmt::format("{}: has no rows of numbers; give a table with one row for each instant", table_.name));
     return std::move(table_);
   }
 
@@ -125,9 +126,10 @@ class TextTable {
 
   void add_row(const std::vector<std::string_view>& words) {
     if (words.size() != table_.columns.size())
-      refuse(fmt::format("{} words where there are {} columns; numbers have decimal points, and what is undefined is "
-                         "nan or empty between delimiters",
-                         words.size(), table_.columns.size()));
+      refuse(
+          fmt::format("{} words where there are {} columns; numbers have decimal points, and what is undefined is "
+                      "nan or empty between delimiters",
+                      words.size(), table_.columns.size()));
     if (table_.rows() == kMaxCsvRows) refuse(fmt::format("more than {} rows; thin the series", kMaxCsvRows));
     for (std::size_t i = 0; i < words.size(); ++i) {
       ForeignColumn& column = table_.columns[i];
@@ -157,8 +159,8 @@ void set_titles(const TableLayout& layout, ForeignTable& table) {
     if (!layout.names.empty()) table.columns[i].title = layout.names[i];
     for (std::size_t k = 0; k < i; ++k) {
       if (table.columns[k].title == table.columns[i].title)
-        throw InvalidInput(fmt::format("{}: columns {} and {} are both called '{}'; rename one, or give names", table.name,
-                                       k + 1, i + 1, one_line(table.columns[i].title, 60)));
+        throw InvalidInput(fmt::format("{}: columns {} and {} are both called '{}'; rename one, or give names",
+                                       table.name, k + 1, i + 1, one_line(table.columns[i].title, 60)));
     }
   }
 }
@@ -202,7 +204,8 @@ ForeignTable read_foreign_table(const std::filesystem::path& file, const TableLa
   else
     return table_of_text(bytes, name, layout);
   if (table.rows() == 0) throw InvalidInput(fmt::format("{}: has no rows; give one for each instant", name));
-  if (table.rows() > kMaxCsvRows) throw InvalidInput(fmt::format("{}: more than {} rows; thin the series", name, kMaxCsvRows));
+  if (table.rows() > kMaxCsvRows)
+    throw InvalidInput(fmt::format("{}: more than {} rows; thin the series", name, kMaxCsvRows));
   set_titles(layout, table);
   return table;
 }

@@ -19,8 +19,8 @@ struct ForeignColumn {
 struct ForeignTable {
   std::string name;  ///< of the file, for messages
   std::vector<ForeignColumn> columns;
-  std::vector<std::size_t> lines;      ///< of each row in a text, from 1; empty: not a text
-  std::vector<std::string> left_out;   ///< what else the file holds, in words
+  std::vector<std::size_t> lines;     ///< of each row in a text, from 1; empty: not a text
+  std::vector<std::string> left_out;  ///< what else the file holds, in words
 
   std::size_t rows() const { return columns.empty() ? 0 : columns.front().values.size(); }
   /// "FILE: line 17", or "FILE: row 3" (counted from 1).

@@ -113,11 +113,13 @@ class Header {
     const bool known = type.size() == 3 && (type[0] == '<' || type[0] == '>') && (type[1] == 'f' || type[1] == 'i') &&
                        (type[2] == '4' || type[2] == '8');
     if (!known)
-      refuse(fmt::format("has {}the type '{}', where only numbers f4, f8, i4, i8 of byte order < or > are read (objects "
-                         "are pickled and never are)",
-                         field.empty() ? "" : fmt::format("for '{}' ", one_line(field, 40)), one_line(type, 20)));
+      refuse(
+          fmt::format("has {}the type '{}', where only numbers f4, f8, i4, i8 of byte order < or > are read (objects "
+                      "are pickled and never are)",
+                      field.empty() ? "" : fmt::format("for '{}' ", one_line(field, 40)), one_line(type, 20)));
     if (array_.fields.size() == kMaxCsvColumns) refuse(fmt::format("has more than {} fields", kMaxCsvColumns));
-    array_.fields.push_back({field, type[1], static_cast<std::size_t>(type[2] - '0'), type[0] == '>', array_.item_size()});
+    array_.fields.push_back(
+        {field, type[1], static_cast<std::size_t>(type[2] - '0'), type[0] == '>', array_.item_size()});
   }
 
   void read_descr() {
@@ -190,8 +192,9 @@ NpyArray parse_npy(std::string_view bytes, const std::string& name) {
   array.data = bytes.substr(start + length);
   const std::size_t items = array.items();
   if (items > kMaxForeignBytes || items * array.item_size() != array.data.size())
-    refuse(fmt::format("holds {} bytes where its header says {} items of {}; it was cut off or changed", array.data.size(),
-                       items > kMaxForeignBytes ? "too many" : std::to_string(items), array.item_size()));
+    refuse(fmt::format("holds {} bytes where its header says {} items of {}; it was cut off or changed",
+                       array.data.size(), items > kMaxForeignBytes ? "too many" : std::to_string(items),
+                       array.item_size()));
   return array;
 }
 
@@ -200,9 +203,10 @@ ForeignTable table_of_npy(const NpyArray& array, const std::string& name) {
   table.name = name;
   const bool records = !array.fields.front().name.empty();
   if (array.shape.empty() || array.shape.size() > (records ? 1u : 2u))
-    throw InvalidInput(fmt::format("{}: is an array of {} dimensions{}; give one row for each instant and one column for each "
-                                   "quantity",
-                                   name, array.shape.size(), records ? " of records" : ""));
+    throw InvalidInput(
+        fmt::format("{}: is an array of {} dimensions{}; give one row for each instant and one column for each "
+                    "quantity",
+                    name, array.shape.size(), records ? " of records" : ""));
   const std::size_t rows = array.shape.front(), width = array.shape.size() == 2 ? array.shape[1] : 1;
   if (width > kMaxCsvColumns) throw InvalidInput(fmt::format("{}: more than {} columns", name, kMaxCsvColumns));
   for (std::size_t k = 0; k < (records ? array.fields.size() : width); ++k) {

@@ -14,11 +14,11 @@ inline constexpr std::string_view kNpyMagic = "\x93NUMPY";
 
 /// A number in each item of the array.
 struct NpyField {
-  std::string name;         ///< empty: the array has no fields
-  char kind = 'f';          ///< 'f' floating, 'i' signed integer
-  std::size_t size = 8;     ///< 4 or 8 [byte]
+  std::string name;      ///< empty: the array has no fields
+  char kind = 'f';       ///< 'f' floating, 'i' signed integer
+  std::size_t size = 8;  ///< 4 or 8 [byte]
   bool big_endian = false;
-  std::size_t offset = 0;   ///< within an item [byte]
+  std::size_t offset = 0;  ///< within an item [byte]
 };
 
 struct NpyArray {

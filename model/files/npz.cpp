@@ -120,11 +120,13 @@ ForeignTable table_of_npz(std::string_view bytes, const std::string& name, const
     }
   }
   if (!array.empty()) {
-    if (arrays.empty()) throw InvalidInput(fmt::format("{}: holds no array '{}'; name one that it holds", name, one_line(array, 60)));
+    if (arrays.empty())
+      throw InvalidInput(fmt::format("{}: holds no array '{}'; name one that it holds", name, one_line(array, 60)));
     return table_of_npy(arrays.front().second, name);
   }
   if (tables.size() > 1)
-    throw InvalidInput(fmt::format("{}: holds the tables {}; say with \"array\" which is meant", name, fmt::join(tables, ", ")));
+    throw InvalidInput(
+        fmt::format("{}: holds the tables {}; say with \"array\" which is meant", name, fmt::join(tables, ", ")));
   ForeignTable table;
   const std::size_t rows = common_length(arrays);
   for (const auto& [title, each] : arrays) {
@@ -139,14 +141,17 @@ ForeignTable table_of_npz(std::string_view bytes, const std::string& name, const
   }
   for (const auto& [title, each] : arrays) {
     const bool taken = tables.empty() ? each.shape.size() == 1 && each.shape.front() == rows : title == tables.front();
-    if (!taken) left_out.push_back(fmt::format("{}: the array '{}' has another shape than the rows", name, one_line(title, 60)));
+    if (!taken)
+      left_out.push_back(fmt::format("{}: the array '{}' has another shape than the rows", name, one_line(title, 60)));
   }
   table.name = name;
   table.left_out = std::move(left_out);
   if (table.columns.empty())
-    throw InvalidInput(fmt::format("{}: holds no arrays of numbers{}", name,
-                                   table.left_out.empty() ? "; give one for each column" : ": " + table.left_out.front()));
-  if (table.columns.size() > kMaxCsvColumns) throw InvalidInput(fmt::format("{}: more than {} columns", name, kMaxCsvColumns));
+    throw InvalidInput(
+        fmt::format("{}: holds no arrays of numbers{}", name,
+                    table.left_out.empty() ? "; give one for each column" : ": " + table.left_out.front()));
+  if (table.columns.size() > kMaxCsvColumns)
+    throw InvalidInput(fmt::format("{}: more than {} columns", name, kMaxCsvColumns));
   return table;
 }
 

@@ -36,6 +36,31 @@ fs::path temporary_name(const fs::path& file) {
 /// Whether a name is one that temporary_name() gives.
 bool is_temporary(const std::string& name) { return name.starts_with('.') && name.find(kMark) != std::string::npos; }
 
+[[noreturn]] void fail_at(const fs::path& file, const char* what) {
+  throw Error(
+      fmt::format("{}: cannot be {} ({}); check space and permissions", file.string(), what, std::strerror(errno)));
+}
+
+/// False with errno set when not everything could be written.
+bool write_to(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+void write_into(const fs::path& file, int descriptor, std::string_view bytes) {
+  if (descriptor < 0) fail_at(file, "opened");
+  const bool written = write_to(descriptor, bytes);
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  if (!written) fail_at(file, "written");
+}
+
 /// A file that disappears unless it is renamed.
 class TemporaryFile {
  public:
@@ -54,12 +79,7 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   void write_all(std::string_view bytes) {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail("written");
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
+    if (!write_to(descriptor_, bytes)) fail("written");
   }
 
   void rename_to_final() {
@@ -78,10 +98,7 @@ class TemporaryFile {
   }
 
  private:
-  [[noreturn]] void fail(const char* what) const {
-    throw Error(
-        fmt::format("{}: cannot be {} ({}); check space and permissions", final_.string(), what, std::strerror(errno)));
-  }
+  [[noreturn]] void fail(const char* what) const { fail_at(final_, what); }
 
   fs::path final_, name_;
   int descriptor_ = -1;
@@ -94,6 +111,22 @@ void write_durably(const fs::path& file, std::string_view bytes) {
   TemporaryFile temporary(file);
   temporary.write_all(bytes);
   temporary.rename_to_final();
+}
+
+void write_as_named(const fs::path& file, std::string_view bytes) {
+  if (file == "-") return write_into("standard output", ::dup(STDOUT_FILENO), bytes);
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);  // of a link's target
+  if (fs::is_directory(status)) throw InvalidInput(fmt::format("{}: is a folder; name a file in it", file.string()));
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    return write_into(file, ::open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY), bytes);
+  fs::path target = file;
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, error)); ++links) {
+    const fs::path to = fs::read_symlink(target, error);
+    if (error || links == 40) throw Error(fmt::format("{}: is a link that leads nowhere; remove it", file.string()));
+    target = folder_of(target) / to;
+  }
+  write_durably(target, bytes);
 }
 
 void copy_durably(const fs::path& from, const fs::path& to) {

@@ -7,11 +7,16 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace grainlaw {
 
 /// Throws Error naming the file, the operation and the system's reason when it cannot be written whole.
 void write_durably(const std::filesystem::path& file, std::string_view bytes);
+
+/// A file of the user's own choice, outside a folder of results: through a link its target is written, durably; a device, a FIFO or
+/// a socket is written into, never replaced; "-" is standard output. Throws Error likewise, InvalidInput for a folder.
+void write_as_named(const std::filesystem::path& file, std::string_view bytes);
 
 /// Copies `from` to `to` in the same manner. Throws Error, also when `from` cannot be read.
 void copy_durably(const std::filesystem::path& from, const std::filesystem::path& to);
@@ -28,5 +33,17 @@ void make_output_folder(const std::filesystem::path& root);
 
 /// Likewise root/name, which it returns; `name` must be safe. Throws InvalidInput for a link or a file there.
 std::filesystem::path make_subfolder(const std::filesystem::path& root, const std::string& name);
+
+/// What `work` returns. When it throws, those of `folders` that are empty are removed, in this order.
+template <class Work>
+auto without_empty_folders(const std::vector<std::filesystem::path>& folders, const Work& work) {
+  try {
+    return work();
+  } catch (...) {
+    std::error_code not_empty;  // then it stays
+    for (const std::filesystem::path& folder : folders) std::filesystem::remove(folder, not_empty);
+    throw;
+  }
+}
 
 }  // namespace grainlaw

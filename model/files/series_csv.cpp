@@ -17,22 +17,23 @@ namespace grainlaw {
 namespace {
 
 /// The columns that follow from others.
-constexpr std::array<std::pair<const char*, double Observation::*>, 9> kFollowing{{{"eps_vol", &Observation::eps_vol},
-                                                                                   {"eps_dev", &Observation::eps_dev},
-                                                                                   {"shear_path", &Observation::shear_path},
-                                                                                   {"P_star", &Observation::P_star},
-                                                                                   {"s_dev", &Observation::s_dev},
-                                                                                   {"s_par", &Observation::s_par},
-                                                                                   {"F_v", &Observation::F_v},
-                                                                                   {"F_dev", &Observation::F_dev},
-                                                                                   {"F_par", &Observation::F_par}}};
+constexpr std::array<std::pair<const char*, double Observation::*>, 9> kFollowing{
+    {{"eps_vol", &Observation::eps_vol},
+     {"eps_dev", &Observation::eps_dev},
+     {"shear_path", &Observation::shear_path},
+     {"P_star", &Observation::P_star},
+     {"s_dev", &Observation::s_dev},
+     {"s_par", &Observation::s_par},
+     {"F_v", &Observation::F_v},
+     {"F_dev", &Observation::F_dev},
+     {"F_par", &Observation::F_par}}};
 
 Observation completed(Observation row, const Observation* before, double stress_unit, const Deviator<double>& N) {
   set_strain(row, row.strain);
-  row.shear_path = before == nullptr
-                       ? 0
-                       : before->shear_path +
-                             (deviator<double>(row.strain.tensor) - deviator<double>(before->strain.tensor)).norm();
+  row.shear_path =
+      before == nullptr
+          ? 0
+          : before->shear_path + (deviator<double>(row.strain.tensor) - deviator<double>(before->strain.tensor)).norm();
   const double P = row.stress.tensor.trace() / 3;
   set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
   row.P_star = P / stress_unit;
@@ -52,7 +53,8 @@ class SeriesReader {
     if (path.segments.size() > 1 && !given_.contains("segment")) {
       reader_.refuse("", "misses the column 'segment': the path has several segments");
     }
-    const auto fabrics = std::ranges::count_if(given_, [](const std::string& name) { return name.starts_with("fabric_"); });
+    const auto fabrics =
+        std::ranges::count_if(given_, [](const std::string& name) { return name.starts_with("fabric_"); });
     if (fabrics != 0 && fabrics != 6)
       reader_.refuse("", fmt::format("has {} of the six columns of fabric; give all or none", fabrics));
   }

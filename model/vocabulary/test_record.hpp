@@ -32,8 +32,11 @@ struct PackingInfo {
 };
 constexpr auto fields_of(std::type_identity<PackingInfo>) {
   using P = PackingInfo;
-  return std::tuple{Field{&P::seed, "seed"}, Field{&P::particles, "particles"}, Field{&P::size_width, "size_width"},
-                    Field{&P::mean_radius, "mean_radius", "m"}, Field{&P::stiffness, "stiffness", "kg/s^2"},
+  return std::tuple{Field{&P::seed, "seed"},
+                    Field{&P::particles, "particles"},
+                    Field{&P::size_width, "size_width"},
+                    Field{&P::mean_radius, "mean_radius", "m"},
+                    Field{&P::stiffness, "stiffness", "kg/s^2"},
                     Field{&P::friction, "friction", "", "", "", Rule::free}};  // so that digests without it stay
 }
 static_assert(tells_every_member<PackingInfo>());

@@ -67,14 +67,15 @@ jq '.series.columns = {strain_xx: "exx", strain_yy: "eyy", strain_zz: "ezz", voi
 jq -e '.parameters | .["pressure.p0"].status == "fitted" and .["stress_ratio_max.Q_c"].status == "fitted" and
   .["fabric_max.Q_c"].value == null and (.["fabric_max.Q_c"].note | test("fabric_xx")) and .["coordination.C1"].status == "fixed"' \
   law-bare/parameters.json >/dev/null || fail "parameters without fabric"
-# P* of the law is that of the data with C*, to a per cent.
+# P* of the law is that of the data with C*: to 2 % at .68, where these packings of 1000 say least, to 1 % beyond.
 P_star() {
   "$grainlaw" predict "$1/parameters.json" path.json -o "$1/predictions/iso" --model reduced --quiet >/dev/null || fail "predict"
   awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next } { print $c["P_star"], $c["F_dev"] }' "$1/predictions/iso/reduced-law.csv"
 }
 echo '{"initial": {"nu": 0.68}, "segments": [{"mode": "UNI", "extent": {"target_nu": 0.8}}]}' >path.json
 paste -d' ' <(P_star law-ours) <(P_star law-bare) |
-  awk '{ if ($3 / $1 > 1.01 || $3 / $1 < 0.99 || NF != 3) bad = 1 } END { exit bad || NR == 0 }' || fail "P* without C*"
+  awk '{ off = $3 / $1 - 1; if (off < 0) off = -off; if (off > (NR < 20 ? 0.02 : 0.01) || NF != 3) bad = 1 }
+    END { exit bad || NR < 100 }' || fail "P* without C*"
 "$grainlaw" predict law-bare/parameters.json path.json -o law-bare/predictions/uni >predicted.txt 2>&1 || fail "predict: $(cat predicted.txt)"
 grep -q 'calibrated without fabric' predicted.txt || fail "$(cat predicted.txt)"
 "$grainlaw" report law-bare -o bare.html >/dev/null 2>&1 || fail "report"

@@ -224,10 +224,9 @@ TEST(FormatsDocument, StatesTheExitCodes) {
 
 TEST(FormatsDocument, NamesEveryFileOfASchema) {
   const std::string text = read_all(kDocument);
-  for (const char* file :
-       {"spec.schema.json", "path.schema.json", "test.schema.json", "dataset.schema.json", "parameters.schema.json",
-        "study.schema.json", "study_settings.schema.json", "plan.schema.json", "prior.schema.json",
-        "import.schema.json"}) {
+  for (const char* file : {"spec.schema.json", "path.schema.json", "test.schema.json", "dataset.schema.json",
+                           "parameters.schema.json", "study.schema.json", "study_settings.schema.json",
+                           "plan.schema.json", "prior.schema.json", "import.schema.json"}) {
     EXPECT_NE(text.find(file), std::string::npos) << file;
     EXPECT_TRUE(std::filesystem::exists(kDocument.parent_path() / "schemas" / file));
   }

@@ -1,5 +1,6 @@
 #include "model/files/series_csv.hpp"
 #include "model/files/column.hpp"
+#include "model/vocabulary/series_check.hpp"
 #include "predict/prediction_files.hpp"
 
 #include <cmath>
@@ -91,7 +92,7 @@ TEST_F(SeriesCsv, HeaderNamesUnits) {
 TEST_F(SeriesCsv, ComputesWhatFollowsFromRequiredColumns) {
   std::set<std::string> optional;
   for (const auto& column : columns_of<Observation>()) {
-    if (!column.required()) optional.insert(column.name);
+    if (!column.required() && !column.name.starts_with("fabric_")) optional.insert(column.name);
   }
   const auto rows = read(text_without(optional));
   ASSERT_EQ(rows.size(), record_.rows.size());
@@ -125,6 +126,21 @@ TEST_F(SeriesCsv, RefusesContradictions) {
   EXPECT_NE(refusal_of(text_without({"E_kin"}, [](Observation& r) { r.segment = 1; }))
                 .find("row 1, column 'segment': 1 is no segment"),
             std::string::npos);
+}
+
+TEST_F(SeriesCsv, GoesWithoutFabricAndContacts) {
+  std::set<std::string> optional;
+  for (const auto& column : columns_of<Observation>()) {
+    if (!column.required()) optional.insert(column.name);
+  }
+  const auto rows = read(text_without(optional));
+  ASSERT_EQ(rows.size(), record_.rows.size());
+  for (const Observation& row : rows) {
+    EXPECT_TRUE(row.fabric.tensor.array().isNaN().all() && std::isnan(row.F_v) && std::isnan(row.F_par) &&
+                std::isnan(row.C_star));
+    EXPECT_TRUE(std::isfinite(row.P_star));
+  }
+  EXPECT_EQ(refusal([&] { check_series(rows, record_.path, record_.packing, "t"); }), "accepted");
 }
 
 TEST_F(SeriesCsv, RefusesUnknownAndMissingColumns) {

@@ -26,10 +26,12 @@ std::vector<Observation> rows_along(const Path& path, int per_segment, double no
   return rows;
 }
 
-const Path kTurning{0.7, Branch::unloading,
+const Path kTurning{0.7,
+                    Branch::unloading,
                     {segment(Mode::D2, "yzx", false, ExtentKind::eps_dev, 0.1),
                      segment(Mode::ISO, "xyz", false, ExtentKind::eps_vol, 0.03),
-                     segment(Mode::D2, "yzx", true, ExtentKind::eps_dev, 0.2), segment(Mode::UNI, "xzy", false, ExtentKind::eps_dev, 0.05),
+                     segment(Mode::D2, "yzx", true, ExtentKind::eps_dev, 0.2),
+                     segment(Mode::UNI, "xzy", false, ExtentKind::eps_dev, 0.05),
                      segment(Mode::D3, "zyx", false, ExtentKind::eps_dev, 0.1)}};
 
 TEST(StraightPath, IsFoundAgain) {
@@ -45,6 +47,18 @@ TEST(StraightPath, IsFoundAgain) {
   }
 }
 
+// Unloading and loading again lie on the line from the first to the last row.
+TEST(StraightPath, TurnsOnOneLineAreFound) {
+  const Path loop{0.7,
+                  Branch::unloading,
+                  {segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.1),
+                   segment(Mode::D2, "xyz", true, ExtentKind::eps_dev, 0.04),
+                   segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.15)}};
+  const auto found = found_segments(rows_along(loop, 25, 1e-6), 1e-4);
+  ASSERT_EQ(found.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(found[k].extent, loop.segments[k].extent, 1e-5);
+}
+
 TEST(StraightPath, KeepsTheVolumeOfAShearThatIsNoMode) {
   Eigen::Matrix3d D = Eigen::Vector3d(0.7, 0.2, -0.9).asDiagonal();
   D(0, 1) = D(1, 0) = 0.3;
@@ -57,7 +71,8 @@ TEST(StraightPath, KeepsTheVolumeOfAShearThatIsNoMode) {
 }
 
 TEST(StraightPath, IsNotStraightenedBeyondTheTolerance) {
-  const Path path{0.7, Branch::unloading, {{Mode::tensor, {Eigen::Vector3d(1.01, 0, -1).asDiagonal()}, ExtentKind::eps_dev, 0.2}}};
+  const Path path{
+      0.7, Branch::unloading, {{Mode::tensor, {Eigen::Vector3d(1.01, 0, -1).asDiagonal()}, ExtentKind::eps_dev, 0.2}}};
   const auto found = found_segments(rows_along(path, 30), 1e-4);  // 1e-3 from D2 at its end
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].mode, Mode::tensor);
@@ -68,11 +83,13 @@ TEST(StraightPath, IsNotStraightenedBeyondTheTolerance) {
 TEST(StraightPath, RowsAreMovedOntoTheirSegments) {
   auto rows = rows_along(kTurning, 40, 1e-5);
   const auto exact = rows_along(kTurning, 40);
-  const Moved moved = move_onto(kTurning, 1e-4, rows);
+  const Moved moved = move_onto(kTurning, rows);
   EXPECT_LE(moved.farthest, std::sqrt(3.0) * 1e-5);
   EXPECT_GT(moved.farthest, 1e-6);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i > 0) EXPECT_EQ(rows[i].segment, static_cast<int>((i - 1) / 40)) << i;
+    if (i % 40 != 0) {
+      EXPECT_EQ(rows[i].segment, static_cast<int>(i / 40)) << i;
+    }
     EXPECT_LE((rows[i].strain.tensor - exact[i].strain.tensor).norm(), 4e-5) << i;
     EXPECT_NEAR(rows[i].nu, 0.7 * std::exp(-rows[i].strain.tensor.trace()), 1e-12);
   }
@@ -80,7 +97,7 @@ TEST(StraightPath, RowsAreMovedOntoTheirSegments) {
 
 TEST(StraightPath, CornersEndTheirSegment) {
   auto rows = rows_along(kTurning, 40);
-  move_onto(kTurning, 1e-4, rows);
+  move_onto(kTurning, rows);
   for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_EQ(rows[i].segment, static_cast<int>((i - 1) / 40)) << i;
 }
 
@@ -96,13 +113,20 @@ TEST(StraightPath, CyclesAreToldApartWithoutRowsAtTheCorners) {
     without_corners.push_back(rows[i]);
     expected.push_back(static_cast<int>(i / 21));
   }
-  EXPECT_LE(move_onto(cycles, 1e-4, without_corners).farthest, 1e-12);
-  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(without_corners[i].segment, expected[i]) << i;
+  EXPECT_LE(move_onto(cycles, without_corners).farthest, 1e-12);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const bool first =
+        i > 0 && expected[i] != expected[i - 1];  // at the strain of the last before: may belong to either
+    if (!first) {
+      EXPECT_EQ(without_corners[i].segment, expected[i]) << i;
+    }
+  }
 }
 
 TEST(StraightPath, RefusesStrainsThatSayNone) {
   std::vector<Observation> rows(5);
-  EXPECT_NE(testing::refusal([&] { found_segments(rows, 1e-4); }).find("the strain never exceeds 0"), std::string::npos);
+  EXPECT_NE(testing::refusal([&] { found_segments(rows, 1e-4); }).find("the strain never exceeds 0"),
+            std::string::npos);
   rows.resize(4000);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].strain.tensor(0, 0) = 1e-2 * static_cast<double>(i % 2);
   EXPECT_NE(testing::refusal([&] { found_segments(rows, 1e-4); }).find("turn more than 1000 times"), std::string::npos);

@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 
@@ -31,6 +33,35 @@ TEST_F(DurableFile, IsNotWrittenThroughALink) {
   write_durably(folder_ / "f", "ours");
   EXPECT_EQ(content(folder_ / "victim"), "untouched");
   EXPECT_FALSE(fs::is_symlink(folder_ / "f"));
+}
+
+// A file that the user named: what it is stays what it is.
+TEST_F(DurableFile, OfTheUsersChoiceIsNeverReplacedByAnotherKind) {
+  put("target", "old");
+  fs::create_symlink("target", folder_ / "link");
+  fs::create_symlink("link", folder_ / "link_to_link");
+  write_as_named(folder_ / "link_to_link", "new");
+  EXPECT_EQ(content(folder_ / "target"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link_to_link") && fs::is_symlink(folder_ / "link"));
+  fs::create_symlink("not yet", folder_ / "dangling");
+  write_as_named(folder_ / "dangling", "made");
+  EXPECT_EQ(content(folder_ / "not yet"), "made");
+  fs::create_symlink("loop", folder_ / "loop");
+  EXPECT_THROW(write_as_named(folder_ / "loop", "x"), Error);
+  EXPECT_THROW(write_as_named(folder_, "x"), InvalidInput);
+
+  const fs::path fifo = folder_ / "fifo";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  const int reader = ::open(fifo.c_str(), O_RDONLY | O_NONBLOCK);
+  write_as_named(fifo, "through");
+  char got[16] = {};
+  EXPECT_EQ(::read(reader, got, sizeof got), 7);
+  ::close(reader);
+  EXPECT_STREQ(got, "through");
+  EXPECT_TRUE(fs::is_fifo(fifo));
+  if (fs::exists("/dev/full")) {
+    EXPECT_THROW(write_as_named("/dev/full", "x"), Error);
+  }
 }
 
 // Hard case R8: a write that fails leaves the earlier file and nothing else.

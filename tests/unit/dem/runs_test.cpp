@@ -117,6 +117,27 @@ TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
   EXPECT_FALSE(fs::exists(store.folder(key) / "leftover"));
 }
 
+// A record that is JSON still, but not what was written.
+TEST_F(Runs, PutADamagedRecordAsideAndRunAgain) {
+  const RunStore store(folder_, "runs");
+  const std::string key = ensure_preparation(store, tiny(), {}, {}).at("key");
+  const fs::path file = store.folder(key) / "run.json";
+  const Json sound = read_json(file, JsonSource::own);
+  for (const char* lost : {"packing", "cost", "sha256", "format_version"}) {
+    Json damaged = sound;
+    damaged.erase(lost);
+    put("runs/" + key + "/run.json", damaged.dump());
+    EXPECT_FALSE(store.find(key)) << lost;
+    std::string said;
+    ResumePolicy policy;
+    policy.log = [&](const std::string& line) { said += line; };
+    const Json again = ensure_preparation(store, tiny(), policy, {});
+    EXPECT_EQ(again.at("files"), sound.at("files")) << lost;
+    EXPECT_NE(said.find(file.string() + ": damaged"), std::string::npos) << said;
+    EXPECT_EQ(content(store.folder(key + ".damaged") / "run.json"), damaged.dump());
+  }
+}
+
 TEST_F(Runs, TestStartsFromTheKeptStateWithAnyThreads) {
   const RunStore store(folder_, "runs");
   ensure_preparation(store, tiny(), {}, {});
