@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -102,7 +103,7 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
   record.path = path_of(mapping, test.mapping, foreign);
   complete(record.rows, record.path, record.packing);
   check_contradictions(record.rows, record.path, record.packing, foreign.place);  // of what was given
-  const Moved moved = move_onto(record.path, record.rows);
+  const Moved moved = move_onto(record.path, test.mapping.path_tolerance, record.rows);
   if (moved.farthest > test.mapping.path_tolerance)
     throw InvalidInput(fmt::format(
         "{}: the strain is {:.3g} off {}, more than path_tolerance, {:g}; correct the path, or leave it "
@@ -120,6 +121,27 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
                                {"farthest_row", moved.farthest}};
   if (!foreign.extra.titles.empty()) result.provenance["extra"] = record.name + ".extra.csv";
   return result;
+}
+
+std::vector<std::string> suspicions(const std::vector<ImportedTest>& tests) {
+  constexpr double kFarOff = 30, kTelling = 1e-3, kNear = 2e-3;  // ratio; P*; distance in nu
+  std::vector<std::string> all;
+  for (const ImportedTest& of : tests) {
+    for (const ImportedTest& unloading : tests) {
+      if (!is_isotropic_unloading(unloading.record) || is_isotropic_unloading(of.record) ||
+          of.record.packing.seed != unloading.record.packing.seed)
+        continue;
+      const Observation& start = of.record.rows.front();
+      const auto nearest = std::ranges::min_element(
+          unloading.record.rows, {}, [&](const Observation& row) { return std::abs(row.nu - start.nu); });
+      const double more = std::max(nearest->P_star, start.P_star), less = std::min(nearest->P_star, start.P_star);
+      if (std::abs(nearest->nu - start.nu) > kNear || more < kTelling || less * kFarOff > more) continue;
+      all.push_back(fmt::format(
+          "test {} starts at P* = {:.3g}, where {} of the same packing has {:.3g}: are the units of both right?",
+          of.record.name, start.P_star, unloading.record.name, nearest->P_star));
+    }
+  }
+  return all;
 }
 
 Dataset write_imported(const Mapping& mapping, const std::vector<ForeignTest>& foreign,

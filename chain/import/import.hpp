@@ -32,6 +32,9 @@ struct ImportedTest {
 /// series would be refused for, and for rows that are farther from the path than the tolerance.
 ImportedTest imported(const Mapping& mapping, const ForeignTest& test);
 
+/// What speaks against the units of a test: a pressure at its start that is 30 times off what unloading of the same packing has there.
+std::vector<std::string> suspicions(const std::vector<ImportedTest>& tests);
+
 /// Writes dataset.json, NAME.csv and, where columns were left over, NAME.extra.csv of each test, and reads it again.
 Dataset write_imported(const Mapping& mapping, const std::vector<ForeignTest>& foreign,
                        const std::vector<ImportedTest>& tests, const std::filesystem::path& output,

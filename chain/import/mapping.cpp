@@ -119,6 +119,8 @@ TestMapping test_from(const Json& document, const Json& json, const std::map<std
   const std::string where = fmt::format("{}: {}", mapping.name, place);
   TestMapping test;
   test.name = json["name"];
+  if (test.name.ends_with(".extra"))  // of the columns that another test leaves over
+    throw InvalidInput(fmt::format("{}.name: '{}' ends like the files of extra columns; rename it", where, test.name));
   test.role = value_of<Role>(json["role"].get<std::string>(), "role");
   test.packing = packing_of(json, packings, where);
   if (json.contains("path")) {

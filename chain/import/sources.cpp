@@ -144,6 +144,9 @@ void Sources::require_all(const SeriesMapping& how) const {
         fmt::format("misses the stress; name columns of stress_xx, stress_yy, stress_zz, or p and q in {}", mapping_));
   else if (!has("q") && !how.isotropic)
     refuse(fmt::format("misses q beside the mean stress; name its column in {}, or say \"isotropic\": true", mapping_));
+  if (tells_volume() && how.nu_start)
+    refuse(fmt::format("tells the volume fraction in a column, and nu_start is given in {}; leave nu_start out",
+                       mapping_));
   if (!tells_volume() && !how.nu_start)
     refuse(
         fmt::format("misses the volume fraction; name a column of nu, void_ratio or porosity in {}, or give nu_start, "
@@ -171,6 +174,10 @@ void Sources::set_units(const std::map<std::string, std::string>& units, double 
     if (!factor)
       refuse(fmt::format("column '{}' ({}): '{}' is no unit of it that is known; give one of {}", shown(*source.column),
                          name, one_line(source.unit, 20), known_units(quantity.kind)));
+    if (stress && stress_unit == 1 && *factor != 1)
+      refuse(fmt::format(
+          "column '{}' ({}) is in {}, but the packing is dimensionless; give the packing's stress_unit in {}",
+          shown(*source.column), name, source.unit, mapping_));
     source.factor = starred ? stress_unit : *factor;
   }
 }

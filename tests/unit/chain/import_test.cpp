@@ -269,8 +269,21 @@ TEST_F(Import, NeedsUnitsOfStressUnlessItHasNone) {
       std::string::npos);
   EXPECT_NE(why(R"(, "stress_unit": 1e9)", R"(, "units": {"stress": "kPa"})").find("units of the stress right?"),
             std::string::npos);
+  EXPECT_NE(why(R"(, "dimensionless": true)", R"(, "units": {"stress": "kPa"})").find("the packing is dimensionless"),
+            std::string::npos);
+  EXPECT_NE(why(R"(, "dimensionless": true)", R"(, "nu_start": 0.7)").find("leave nu_start out"), std::string::npos);
   EXPECT_NE(why("", "").find("misses the key 'mean_radius'"), std::string::npos);
   EXPECT_NE(why(R"(, "stress_unit": 1, "dimensionless": true)", "").find("says twice"), std::string::npos);
+}
+
+// A file in another unit than the others is no contradiction in itself.
+TEST_F(Import, SuspectsUnitsThatDifferBetweenTests) {
+  std::vector<ImportedTest> tests;
+  for (const char* name : {"ISO-unloading-s1", "D2-0.71-s1", "D2-0.75-s1"}) tests.push_back({ours(name), {}, {}});
+  EXPECT_TRUE(suspicions(tests).empty());
+  for (Observation& row : tests[2].record.rows) row.P_star /= 1000;
+  ASSERT_EQ(suspicions(tests).size(), 1u);
+  EXPECT_NE(suspicions(tests)[0].find("test D2-0.75-s1 starts at P* = "), std::string::npos);
 }
 
 TEST(Quantity, IsGuessedFromCommonNames) {
