@@ -28,7 +28,7 @@ averages() {
   local sample=$work/sample
   "$bin/grainlaw" import $lammps/sample/mapping.json -o "$sample/lammps" --quiet >/dev/null
   $python $lammps/averages.py $lammps/sample "$sample/numpy" 17
-  compared averages.lammps.stress_beside_lammps "<=1e-10" stress "$sample/lammps/D2.csv" $lammps/sample/packing-9/D2.csv
+  compared averages.lammps.stress_beside_lammps "<=1e-10" normal_stress "$sample/lammps/D2.csv" $lammps/sample/packing-9/D2.csv
   compared averages.lammps.stress_beside_numpy "<=1e-10" stress "$sample/lammps/D2.csv" "$sample/numpy/packing-9/D2.csv"
   compared averages.lammps.fabric_beside_numpy "<=1e-10" fabric "$sample/lammps/D2.csv" "$sample/numpy/packing-9/D2.csv"
   compared averages.lammps.contacts_beside_numpy "<=1e-10" contacts "$sample/lammps/D2.csv" "$sample/numpy/packing-9/D2.csv"
