@@ -14,11 +14,7 @@ Task declare_completion(CLI::App& command) {
   add_choice<Shell>(command, "SHELL", *shell, "whose script is wanted")->required();
   command.add_option("-o,--output", *file, "file of the script; default: standard output")->type_name("FILE");
   return [shell, file, root = command.get_parent()](Session&) {
-    const std::string script = completion_script(*root, *shell);
-    if (file->empty())
-      print_result(script);
-    else
-      write_as_named(*file, script);
+    write_as_named(file->empty() ? "-" : *file, completion_script(*root, *shell));
     return ExitCode::ok;
   };
 }

@@ -43,10 +43,10 @@ std::string localised(std::string text) {
 }
 
 void write_new(const fs::path& file, const std::string& text) {
-  if (fs::exists(file))
+  if (file != "-" && fs::exists(file))
     throw InvalidInput(
         fmt::format("{}: is there already and was left alone; give another name with -o", file.string()));
-  write_durably(file, text);
+  write_as_named(file, text);
 }
 
 ExitCode init(const InitOptions& options) {
@@ -61,8 +61,6 @@ ExitCode init(const InitOptions& options) {
   for (const auto& [file, text] : starters::kFiles) {
     if (dataset && file.starts_with("dataset/"))
       write_new(output / file.substr(8), localised(text));
-    else if (!dataset && file == name && to_output)
-      print_result(localised(text));
     else if (!dataset && file == name)
       write_new(output, localised(text));
   }
@@ -81,7 +79,9 @@ ExitCode init(const InitOptions& options) {
 Task declare_init(CLI::App& command) {
   const auto options = std::make_shared<InitOptions>();
   add_choice<Starter>(command, "KIND", options->kind, "of the starter: spec, test, path or dataset")->required();
-  command.add_option("-o,--output", options->output, "file, - for standard output, or folder of a data set (default: named after KIND)")
+  command
+      .add_option("-o,--output", options->output,
+                  "file, - for standard output, or folder of a data set (default: named after KIND)")
       ->type_name("FILE");
   return [options](Session&) { return init(*options); };
 }

@@ -11,7 +11,10 @@ Task declare_report(CLI::App& command) {
   const auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>(),
              other = std::make_shared<std::filesystem::path>();
   command.add_option("DIR", *folder, "folder of a calibration")->required()->type_name("DIR");
-  command.add_option("-o,--output", *html, "file of the page, e.g. report.html, or - for standard output; not needed with --json")->type_name("FILE");
+  command
+      .add_option("-o,--output", *html,
+                  "file of the page, e.g. report.html, or - for standard output; not needed with --json")
+      ->type_name("FILE");
   command.add_option("--compare", *other, "folder of another calibration, set beside this one")->type_name("DIR");
   return [folder, html, other](Session& session) {
     if (html->empty() && !session.json)
