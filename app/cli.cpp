@@ -149,6 +149,7 @@ int perform(const Task& task, const Common& common, const std::string& command) 
   } catch (const std::bad_alloc&) {
     return fail(ExitCode::failure, "out of memory; use fewer particles or threads");
   } catch (const std::exception& error) {
+    if (stop.stop_requested()) return fail(ExitCode::interrupted, fmt::format("interrupted: {}", error.what()));
     return fail(ExitCode::failure, error.what());
   }
 }

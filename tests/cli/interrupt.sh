@@ -31,17 +31,24 @@ for signal in INT TERM; do
   (( $(finished) == 2 )) || fail "$(finished) finished runs, not 2"
   [[ ! -e out/parameters.json && ! -e out/dataset/dataset.json ]] || fail "results of an unfinished calibration"
 done
-# waiting for what nobody writes, too
+# waiting for what nobody writes or reads, too
 mkfifo nobody
-"$grainlaw" calibrate nobody -o none >stdout 2>log &
-pid=$!
-sleep 0.3
-kill -INT $pid
-for ((i = 0; i < 50; ++i)); do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
-kill -9 $pid 2>/dev/null && fail "a FIFO that nobody writes ignores SIGINT"
-code=0
-wait $pid || code=$?
-[[ $code == 130 ]] && grep -q 'grainlaw: interrupted' log || fail "interrupted before a FIFO: $code $(cat log)"
+for command in "calibrate nobody -o none" "completion bash -o nobody"; do
+  "$grainlaw" $command >stdout 2>log &
+  pid=$!
+  for ((i = 0; i < 100; ++i)); do  # until SIGINT (bit 1) is caught, and some more until it waits
+    caught=$(awk '/^SigCgt/ { print $2 }' /proc/$pid/status)
+    (( 16#${caught: -2} & 2 )) && break
+    sleep 0.1
+  done
+  sleep 0.5
+  kill -INT $pid
+  for ((i = 0; i < 50; ++i)); do kill -0 $pid 2>/dev/null || break; sleep 0.1; done
+  kill -9 $pid 2>/dev/null && fail "$command: a FIFO without another end ignores SIGINT"
+  code=0
+  wait $pid || code=$?
+  [[ $code == 130 ]] && grep -q 'grainlaw: interrupted' log || fail "$command: interrupted before a FIFO: $code $(cat log)"
+done
 before=$(find out/runs -name run.json -printf '%p %T@\n' | sort)
 sed -i 's/"eps_dev": 100/"eps_dev": 0.01/' spec.json
 "$grainlaw" calibrate spec.json -o out >/dev/null 2>log || [[ $? == 2 || $? == 3 ]]  # 64 spheres at one density make no law
