@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -56,7 +57,10 @@ RunStore::RunStore(const fs::path& parent, const std::string& name) : root_(make
   const fs::path file = root_ / ".lock";
   lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (lock_ < 0) throw Error(fmt::format("{}: cannot be created: {}", file.string(), std::strerror(errno)));
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+  struct stat locked {
+  }, there{};  // differ where a store that left nothing took its lock along in between
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 || fstat(lock_, &locked) != 0 || stat(file.c_str(), &there) != 0 ||
+      locked.st_ino != there.st_ino) {
     close(lock_);
     throw Error(
         fmt::format("{}: another grainlaw works in this folder; wait for it or give another -o", root_.string()));
@@ -107,9 +111,7 @@ fs::path RunStore::begin(const std::string& key) const {
   return make_subfolder(root_, key);
 }
 
-fs::path RunStore::reopen(const std::string& key) const {
-  return fs::exists(folder(key) / "run.json") ? begin(key) : make_subfolder(root_, key);
-}
+fs::path RunStore::reopen(const std::string& key) const { return make_subfolder(root_, key); }
 
 void RunStore::finish(const std::string& key, const Json& request, const OrderedJson& record) const {
   const fs::path run = folder(key);

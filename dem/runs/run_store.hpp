@@ -24,7 +24,8 @@ inline constexpr const char* kProgress = "progress.json";  ///< what a preparati
 
 class RunStore {
  public:
-  /// Creates parent/name when absent and locks it until destruction, when it is removed if still empty. Throws Error when another process works there.
+  /// Creates parent/name when absent and locks it until destruction, when it is removed if still empty. Throws Error when another
+  /// process works there.
   RunStore(const std::filesystem::path& parent, const std::string& name);
   ~RunStore();
   RunStore(const RunStore&) = delete;
@@ -43,7 +44,7 @@ class RunStore {
   /// An empty folder for the run; what an unfinished or damaged run left there is removed.
   std::filesystem::path begin(const std::string& key) const;
 
-  /// The folder of an unfinished run as it is, or an empty one.
+  /// The folder of an unfinished run as it is, or an empty one; a damaged one is to be put aside before.
   std::filesystem::path reopen(const std::string& key) const;
 
   /// Writes run.json: {format, key, request, `record`'s keys, files: {name: SHA-256}, sha256 of all these}, then removes the scratch
