@@ -66,10 +66,12 @@ constexpr std::array kCommands{
     Command{"check", "whether files are sound, what they would run, how long, how much disk", declare_check,
             Kind::computes},
     Command{"simulate", "one packing or one element test in the DEM engine", declare_simulate, Kind::simulates},
+    Command{"import", "series and particles of others as a data set", declare_import, Kind::computes},
     Command{"calibrate", "packings and element tests of a spec, then the law's parameters", declare_calibrate,
             Kind::simulates},
     Command{"predict", "the calibrated law along a strain path, and DEM of the same path", declare_predict,
             Kind::simulates},
+    Command{"export", "states, runs and data sets as files of other programs", declare_export, Kind::computes},
     Command{"report", "one HTML page about a calibration and its predictions", declare_report, Kind::computes}};
 
 constexpr std::array kStudies{

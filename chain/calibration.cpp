@@ -138,7 +138,13 @@ void save(const Fitted& all, const fit::CalibrationOptions& options, const fs::p
 }  // namespace
 
 CalibrationInput read_calibration_input(const fs::path& spec, const fs::path& dataset) {
-  if (spec.empty() && dataset.empty())
+  std::optional<dem::Spec> read;
+  if (!spec.empty()) read = dem::read_spec(spec);
+  return calibration_input(std::move(read), spec.string(), dataset);
+}
+
+CalibrationInput calibration_input(std::optional<dem::Spec> spec, const std::string& name, const fs::path& dataset) {
+  if (!spec && dataset.empty())
     throw InvalidInput("calibrate: misses SPEC.json; give it, or --dataset with the folder of a data set");
   CalibrationInput input;
   if (!dataset.empty()) {
@@ -146,12 +152,12 @@ CalibrationInput read_calibration_input(const fs::path& spec, const fs::path& da
     input.dataset = read_dataset(input.dataset_folder);
     check_tests(tests_of(*input.dataset, Role::calibration), input.dataset_folder.string());
   }
-  if (!spec.empty()) {
-    input.spec = dem::read_spec(spec);
+  if (spec) {
+    input.spec = std::move(spec);
   } else if (!input.dataset->spec.is_null()) {
     input.spec = dem::spec_from_json(input.dataset->spec, (input.dataset_folder / "dataset.json").string() + ": spec");
   }
-  if (!input.dataset) check_tests(calibration_tests(plan(*input.spec)), spec.string());
+  if (!input.dataset) check_tests(calibration_tests(plan(*input.spec)), name);
   return input;
 }
 

@@ -25,6 +25,10 @@ struct CalibrationInput {
 /// key, also for tests that no fit can be made of.
 CalibrationInput read_calibration_input(const std::filesystem::path& spec, const std::filesystem::path& dataset);
 
+/// The same with a spec that has been read, `name` in messages; one of the two may be missing.
+CalibrationInput calibration_input(std::optional<dem::Spec> spec, const std::string& name,
+                                   const std::filesystem::path& dataset);
+
 /// The fit's options as the input's spec asks for them.
 fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Execution& execution);
 

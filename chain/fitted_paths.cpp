@@ -6,8 +6,10 @@
 
 #include "chain/rehearsals.hpp"
 #include "model/files/fields_json.hpp"
+#include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
+#include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 #include "predict/rung_advice.hpp"
@@ -79,13 +81,22 @@ std::vector<FittedPath> read_fitted_paths(const std::filesystem::path& file, con
   try {
     for (const Json& object : document.at("paths")) {
       FittedPath& fitted = paths.emplace_back();
-      fitted.path =
-          path_from_json(object.at("path"), file.string(), fmt::format("paths[{}].path.", paths.size() - 1), true);
+      const std::string place = fmt::format("paths[{}].path", paths.size() - 1);
+      check_schema(object.at("path"), Schema::path, place);
+      fitted.path = path_from_json(object.at("path"), place, "", true);
       read_fields(object.at("curves"), fitted.curves);
+      for (const FittedCurve& curve : fitted.curves) {
+        for (const auto* column : {&curve.P_star, &curve.s_par, &curve.F_par}) {
+          if (column->size() != curve.eps_dev.size())
+            throw InvalidInput(fmt::format("paths[{}].curves: columns differ in length", paths.size() - 1));
+        }
+      }
       fitted.recommended = recommended_along(law, fitted.path).value_or(Rung::reduced);
     }
   } catch (const Json::exception& error) {
-    throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
+    throw InvalidInput(fmt::format("{}: {}", file.string(), one_line(error.what(), 200)));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", file.string(), one_line(error.what(), 300)));
   }
   return paths;
 }

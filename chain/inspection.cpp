@@ -8,6 +8,7 @@
 #include <fstream>
 #include <utility>
 
+#include "chain/import/import.hpp"
 #include "chain/rehearsals.hpp"
 #include "chain/report_input.hpp"
 #include "dem/files/sphere_table.hpp"
@@ -45,7 +46,8 @@ constexpr std::array kKinds{Kind{"SPEC", Schema::spec, "spec", ""},
                             Kind{"data set", Schema::dataset, "dataset", "grainlaw dataset"},
                             Kind{"parameters", Schema::parameters, "parameters", "grainlaw parameters"},
                             Kind{"prior", Schema::prior, "prior", "grainlaw prior"},
-                            Kind{"plan", Schema::plan, "plan", "grainlaw plan"}};
+                            Kind{"plan", Schema::plan, "plan", "grainlaw plan"},
+                            Kind{"mapping", Schema::mapping, "import", ""}};
 
 /// By its format, its "$schema", or else by the kind of which it has most keys.
 const Kind* kind_of(const Json& document) {
@@ -137,6 +139,19 @@ void inspect_dataset(const fs::path& folder, const fs::path& output, const Execu
   seen.forecast = forecast(input, output, execution);
 }
 
+void inspect_mapping(const fs::path& file, const Execution& execution, Inspection& seen) {
+  const Mapping mapping = read_mapping(file);
+  std::size_t rows = 0;
+  std::vector<std::string> paths;
+  for (const ForeignTest& test : read_foreign(mapping, execution)) {
+    const ImportedTest ours = imported(mapping, test);
+    rows += ours.record.rows.size();
+    paths.push_back(fmt::format("{}: {}", ours.record.name, ours.says.at(1)));
+  }
+  seen.holds = {fmt::format("{} of others, {}", counted(mapping.tests.size(), "test"), counted(rows, "row"))};
+  seen.holds.insert(seen.holds.end(), paths.begin(), paths.end());
+}
+
 void inspect_parameters(const fs::path& file, Inspection& seen) {
   const CalibratedLaw law = read_parameters(file).law;
   std::vector<std::string> rungs;
@@ -155,7 +170,7 @@ void inspect_json(const fs::path& file, const Company& company, const fs::path& 
   if (kind == nullptr)
     throw InvalidInput(
         fmt::format("{}: no command reads this kind of file by itself; give a SPEC, TEST, PATH, data "
-                    "set, parameters, prior or plan, or the folder of a calibration",
+                    "set, parameters, prior, plan or mapping, or the folder of a calibration",
                     file.string()));
   seen.kind = kind->name;
   seen.refusals = schema_violations(document, kind->schema, one_line(file.string(), 200));
@@ -171,6 +186,8 @@ void inspect_json(const fs::path& file, const Company& company, const fs::path& 
       return inspect_dataset(file.has_parent_path() ? file.parent_path() : ".", output, execution, seen);
     case Schema::parameters:
       return inspect_parameters(file, seen);
+    case Schema::mapping:
+      return inspect_mapping(file, execution, seen);
     case Schema::prior:
       seen.holds = {counted(fit::read_prior(file).size.packings, "packing")};
       return;

@@ -28,7 +28,7 @@ using predict::Initial;
 
 constexpr int kFreePoints = 200;  // of a curve that no DEM run dictates
 
-/// The rung that is asked for, else reduced, evolution, and memory where it is calibrated.
+/// The rung that is asked for, else reduced, evolution, and memory where it is calibrated; of a law without fabric the reduced one.
 std::vector<Rung> rungs_of(const PredictionInput& input) {
   const bool decides = law_decides(input.path.path);
   if (input.model) {
@@ -40,6 +40,7 @@ std::vector<Rung> rungs_of(const PredictionInput& input) {
     }
     return {*input.model};
   }
+  if (!decides && !knows_fabric(input.law.parameters)) return {Rung::reduced};
   std::vector<Rung> rungs{Rung::reduced, Rung::evolution};
   if (has_values(input.law, "memory")) rungs.push_back(Rung::memory);
   if (decides) rungs.erase(rungs.begin());  // a closed form of the strain
@@ -128,6 +129,13 @@ void add_compared_curves(const Law& law, const PredictionInput& input, predict::
     const std::uint64_t seed = test.record.packing.seed;
     for (const Rung model : law.rungs) {
       for (const Initial initial : initials_of(input)) {
+        if (initial == Initial::measured && model != Rung::reduced &&
+            !test.record.rows.front().fabric.tensor.allFinite()) {
+          content.failures.push_back(
+              {model, initial, seed,
+               "the run tells no fabric, which this rung starts from; --initial law does without it"});
+          continue;
+        }
         const auto start = initial == Initial::law ? predict::state_from_law(law.calibrated.parameters, content.path.nu)
                                                    : measured_start(test.record);
         const bool added = add_curve(
@@ -204,7 +212,11 @@ void add_rehearsals(const Law& law, predict::PredictionFolder& content) {
 }
 
 /// What the law does not know of a path, whichever rung.
-void add_path_warnings(predict::PredictionFolder& content) {
+void add_path_warnings(const CalibratedLaw& law, predict::PredictionFolder& content) {
+  if (!knows_fabric(law.parameters))
+    content.warnings.emplace_back(
+        "the law was calibrated without fabric: it says nothing of it, and the rungs beyond the reduced one "
+        "are not there");
   if (content.path.branch != Branch::unloading) {
     content.warnings.push_back(fmt::format(
         "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "
@@ -262,10 +274,14 @@ void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& con
 }  // namespace
 
 PredictionInput read_prediction_input(const fs::path& parameters, const fs::path& path) {
+  return prediction_input(parameters, read_path(path), path.string());
+}
+
+PredictionInput prediction_input(const fs::path& parameters, PathFile path, const std::string& path_name) {
   PredictionInput input{.law = read_parameters(parameters).law,
                         .law_name = parameters.string(),
-                        .path = read_path(path),
-                        .path_name = path.string()};
+                        .path = std::move(path),
+                        .path_name = path_name};
   input.parameters = {{"file", parameters.string()},
                       {"sha256", sha256_of_file(parameters)},
                       {"dataset_digest", input.law.dataset_digest}};
@@ -314,7 +330,7 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   if (!input.new_runs) require_a_curve(content);  // runs that were made stay, with what became of the law
   add_advice(law, content);
   add_rehearsals(law, content);
-  add_path_warnings(content);
+  add_path_warnings(input.law, content);
   make_output_folder(output);
   if (input.finished_runs)
     content.dem = adopt(input.finished_runs->dataset, input.finished_runs->folder, make_subfolder(output, "dem"));

@@ -45,6 +45,9 @@ struct PredictionInput {
 /// Reads parameters.json and PATH.json. Throws InvalidInput naming file and key.
 PredictionInput read_prediction_input(const std::filesystem::path& parameters, const std::filesystem::path& path);
 
+/// The same with a path that has been read, `path_name` in messages.
+PredictionInput prediction_input(const std::filesystem::path& parameters, PathFile path, const std::string& path_name);
+
 /// The spec by which new packings are prepared: `spec`, or when that is empty spec.resolved.json beside `parameters`. Throws
 /// InvalidInput naming the file.
 dem::Spec spec_of_calibration(const std::filesystem::path& spec, const std::filesystem::path& parameters);

@@ -6,6 +6,7 @@
 
 #include "fit/calibration_file.hpp"
 #include "model/files/digest.hpp"
+#include "model/files/one_line.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -62,11 +63,14 @@ void add_studies(const fs::path& dir, ReportInput& input) {
     const fs::path file = folder / "study.json";
     if (!fs::exists(file)) continue;
     const Json document = read_json(file, JsonSource::own);
+    if (!document.is_object() || document.value("format", Json()) != "grainlaw study")
+      throw InvalidInput(
+          fmt::format("{}: is no study.json: its format must be \"grainlaw study\"; remove it", file.string()));
     try {
       if (document.contains("settings"))
         input.studies.emplace_back(folder.filename().string(), study_from_json(document));
     } catch (const Json::exception& error) {
-      throw InvalidInput(fmt::format("{}: is no study.json: {}", file.string(), error.what()));
+      throw InvalidInput(fmt::format("{}: is no study.json: {}", file.string(), one_line(error.what(), 200)));
     }
   }
 }

@@ -30,17 +30,33 @@ install(FILES ${PROJECT_BINARY_DIR}/grainlaw-config.cmake ${PROJECT_BINARY_DIR}/
 
 install(TARGETS grainlaw RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 
+# The Python package, where Debian's interpreter looks below /usr.
+set(GRAINLAW_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Folder of Python packages, below the prefix")
+if(GRAINLAW_PYTHON)
+  install(TARGETS grainlaw_python LIBRARY DESTINATION ${GRAINLAW_PYTHON_DIR}/grainlaw COMPONENT python)
+  install(DIRECTORY python/grainlaw DESTINATION ${GRAINLAW_PYTHON_DIR} COMPONENT python
+    FILES_MATCHING PATTERN *.py PATTERN *.pyi PATTERN py.typed PATTERN __pycache__ EXCLUDE)
+endif()
+
 # As in the source tree, so that links between the pages hold; the schemas of the input files are in docs/schemas.
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
-# cpack -G DEB: the program with completions, manual and documentation; the libraries are for those who build.
+# cpack -G DEB: the program with completions, manual and documentation; the Python package; the libraries are for those who
+# build.
 set(CPACK_PACKAGE_CONTACT "the authors of CITATION.cff <grainlaw@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME grainlaw)
+if(GRAINLAW_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-grainlaw)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${next_minor}), python3-numpy")
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

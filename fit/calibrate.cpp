@@ -54,13 +54,32 @@ void set_anisotropy(const std::vector<Trajectory>& trajectories, Calibration& ca
   }
 }
 
-/// The stage of the memory rung, or why there is none; what is fixed by decision is said as well.
-StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, Calibration& calibration,
+/// Those that can be followed with their fabric: of tests that tell it, and isotropic ones.
+std::vector<Trajectory> with_fabric(std::vector<Trajectory> trajectories) {
+  std::erase_if(trajectories, [](const Trajectory& t) { return !t.start.F.allFinite(); });
+  return trajectories;
+}
+
+bool any_sheared(const std::vector<Trajectory>& trajectories) {
+  return std::ranges::any_of(trajectories, [](const Trajectory& t) { return !t.axes.empty(); });
+}
+
+void fix_by_decision(CalibratedLaw& law) {
+  for (const auto& [name, value] :
+       {std::pair{"memory.m", law.parameters.memory.m}, {"memory.a_P", law.parameters.memory.a_P}})
+    law.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed, "by docs/decisions/0005-memory-law.md"};
+}
+
+/// Stages 4 to 6 of data that tell no fabric: none of it can be said, and the laws of the stages before stand.
+void leave_out_fabric(Calibration& calibration, const CalibrationOptions& options, const RunControl& control) {
+  run(left_out("evolution", parameters_of("anisotropy"), kAddFabric), calibration, options, control);
+  run(no_lode(std::string("taken as none: ") + kAddFabric), calibration, options, control);
+  run(no_memory(kAddFabric), calibration, options, control);
+}
+
+/// The stage of the memory rung, or why there is none.
+StageDefinition memory_rung(const std::vector<Trajectory>& trajectories, const Calibration& calibration,
                             const CalibrationOptions& options) {
-  for (const auto& [name, value] : {std::pair{"memory.m", calibration.law.parameters.memory.m},
-                                    {"memory.a_P", calibration.law.parameters.memory.a_P}})
-    calibration.law.estimates[parameter_index(name)] = {value, kUndefined, Status::fixed,
-                                                        "by docs/decisions/0005-memory-law.md"};
   for (const char* group :
        {"steady_coordination", "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"}) {
     if (has_values(calibration.law, group)) continue;
@@ -152,17 +171,24 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   fit_shear_laws(data, calibration, options, control);
   const std::vector<Trajectory> trajectories =
       trajectories_of(data, calibration.law.parameters.isotropic.pressure.nu_c, options);
-  const ByLodeAngle sheared = by_lode_angle(trajectories);
-  run(evolution_stage(sheared.reference, unseen_laws(calibration.shear), options), calibration, options, control);
-  set_anisotropy(sheared.reference, calibration, options);
-  run(lode_stage(sheared.others, options), calibration, options, control);
-  run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
+  fix_by_decision(calibration.law);
+  if (any_sheared(with_fabric(trajectories))) {
+    const ByLodeAngle sheared = by_lode_angle(with_fabric(trajectories));
+    run(evolution_stage(sheared.reference, unseen_laws(calibration.shear), options), calibration, options, control);
+    set_anisotropy(sheared.reference, calibration, options);
+    run(lode_stage(sheared.others, options), calibration, options, control);
+    run(memory_rung(sheared.reference, calibration, options), calibration, options, control);
+  } else {
+    leave_out_fabric(calibration, options, control);
+  }
   calibration.law.covariance = calibration.errors.covariance();
   calibration.size = size_of(tests);
   moderate_errors(options, calibration);
+  tie_errors(calibration.law);
   calibration.law.scatter = packing_scatter(data, calibration.law.parameters, options.iso_nu_min);
   calibration.law.range = range_of(trajectories, data);
   calibration.law.converged = all_converged(calibration);
+  forget_unknown_fabric(calibration.law);
   return calibration;
 }
 

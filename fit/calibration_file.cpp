@@ -123,7 +123,8 @@ std::vector<LeftOut> left_out_from_json(const Json& object) {
   std::vector<LeftOut> fits;
   if (object.is_null()) return fits;
   for (std::size_t k = 0; k < object.at("seeds").size(); ++k)
-    fits.push_back({object["seeds"][k], std::vector<double>(kParameterCount, std::nan("")), object.at("notes").at(k)});
+    fits.push_back({whole_number<std::uint64_t>(object["seeds"].at(k)),
+                    std::vector<double>(kParameterCount, std::nan("")), object.at("notes").at(k)});
   for (const auto& item : object.at("parameters").items()) {
     for (std::size_t k = 0; k < fits.size(); ++k)
       fits[k].value[parameter_index(item.key())] = number_or_nan(item.value().at("values").at(k));
@@ -186,7 +187,7 @@ ModeComparison read_calibration(const std::filesystem::path& file, Calibration& 
     throw InvalidInput(fmt::format("{}: is no calibration.json of this version: {}; run grainlaw calibrate again",
                                    one_line(file.string(), 200), one_line(error.what(), 200)));
   } catch (const InvalidInput& error) {
-    throw InvalidInput(fmt::format("{}: {}", one_line(file.string(), 200), error.what()));
+    throw InvalidInput(fmt::format("{}: {}", one_line(file.string(), 200), one_line(error.what(), 300)));
   }
   return modes;
 }

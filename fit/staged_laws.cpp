@@ -30,11 +30,64 @@ void run(const StageDefinition& stage, Calibration& calibration, const Calibrati
   for (const auto& [name, estimate] : fit.stage.estimates) calibration.law.estimates[parameter_index(name)] = estimate;
 }
 
+namespace {
+
+/// C1, alpha, phi_c and phi_v of tests that count no contacts, as published: what is left of P is its own.
+void assume_contacts(const StateLawName& of, Calibration& calibration, const CalibrationOptions& options,
+                     const RunControl& control) {
+  const auto field = fields(calibration.law.parameters);
+  for (const std::string law : {"coordination", "rattlers"}) {
+    StageDefinition stage = left_out(of.prefix + law, {}, "taken as published; " + std::string(kAddContacts));
+    for (const std::string& name : parameters_of(of.prefix + law)) {
+      if (name.ends_with(".nu_c")) continue;
+      const std::size_t i = parameter_index(name);
+      *field[i] = parameter_table()[i].published.value();
+      stage.absent.push_back({name,
+                              {*field[i], kUndefined, Status::fixed,
+                               std::string("as published, p0 and gamma_p refer to it; ") + kAddContacts}});
+    }
+    run(stage, calibration, options, control);
+  }
+}
+
+/// The jamming density of Eq. (11) where nobody counted contacts: the pressure's.
+void tie_jamming(const StateLawName& of, Calibration& calibration) {
+  const std::string prefix = of.prefix;
+  const std::size_t from = parameter_index(prefix + "pressure.nu_c"),
+                    to = parameter_index(prefix + "coordination.nu_c");
+  const auto i = static_cast<Eigen::Index>(from), j = static_cast<Eigen::Index>(to);
+  CalibratedLaw& law = calibration.law;
+  law.estimates[to] = law.estimates[from];
+  if (law.estimates[from].status == Status::not_identified) return;
+  law.estimates[to].status = Status::tied;
+  law.estimates[to].note = fmt::format("that of the stage {}pressure; {}", prefix, kAddContacts);
+  (law.parameters.*of.law).coordination.nu_c = (law.parameters.*of.law).pressure.nu_c;
+  calibration.errors.influence.row(j) = calibration.errors.influence.row(i);
+  calibration.errors.degrees_of_freedom(j) = calibration.errors.degrees_of_freedom(i);
+}
+
+/// Eqs. (11), (12), (14), on the tests that count contacts if any does.
+void fit_state_law(const StateLawName& of, const std::vector<DensitySeries>& series, std::string window,
+                   Calibration& calibration, const CalibrationOptions& options, const RunControl& control) {
+  const std::vector<DensitySeries> counted = with_contacts(series);
+  if (counted.empty()) {
+    assume_contacts(of, calibration, options, control);
+    run(pressure_of_assumed_contacts(of, series, window), calibration, options, control);
+    tie_jamming(of, calibration);
+    return;
+  }
+  if (counted.size() < series.size())
+    window += fmt::format(", without {} tests that count no contacts", series.size() - counted.size());
+  for (const StageDefinition& stage : state_law_stages(of, counted, window)) run(stage, calibration, options, control);
+}
+
+}  // namespace
+
 void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
                         const CalibrationOptions& options, const RunControl& control) {
   const std::string window = fmt::format("{}, nu >= {:g}", branch, options.iso_nu_min);
   const auto next = [&](const StageDefinition& stage) { run(stage, calibration, options, control); };
-  for (const StageDefinition& stage : state_law_stages(kUnloadingLaw, series, window)) next(stage);
+  fit_state_law(kUnloadingLaw, series, window, calibration, options, control);
   next(overlap_stage(series, window, calibration.law.parameters.isotropic.pressure.nu_c));
   next(fabric_trace_stage(series, window));
 }
@@ -42,15 +95,15 @@ void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeri
 void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
                      const RunControl& control) {
   const std::vector<DensitySeries> series = steady_series(data, mode, options);
-  const std::vector<StageDefinition> stages =
-      series.empty()
-          ? left_out_state_law(kSteadyLaw, fmt::format("no {} test reaches eps_dev = {:g}; shear further",
-                                                       to_string(mode), options.steady_from))
-          : state_law_stages(kSteadyLaw, series,
-                             fmt::format("means of {} over eps_dev >= {:g}, or from where it is steady (shear[]), one "
-                                         "row per test",
-                                         to_string(mode), options.steady_from));
-  for (const StageDefinition& stage : stages) run(stage, calibration, options, control);
+  if (!series.empty()) {
+    const std::string window =
+        fmt::format("means of {} over eps_dev >= {:g}, or from where it is steady (shear[]), one row per test",
+                    to_string(mode), options.steady_from);
+    return fit_state_law(kSteadyLaw, series, window, calibration, options, control);
+  }
+  const std::string remedy =
+      fmt::format("no {} test reaches eps_dev = {:g}; shear further", to_string(mode), options.steady_from);
+  for (const StageDefinition& stage : left_out_state_law(kSteadyLaw, remedy)) run(stage, calibration, options, control);
 }
 
 void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
@@ -70,8 +123,21 @@ void fit_shear_laws(const DataSet& data, Calibration& calibration, const Calibra
     cluster.push_back(packing_of(data, *data.pure_shear[i]));
   }
   for (const ShearQuantity& quantity : kShearQuantities)
-    run(density_law_stage(quantity, of_law, cluster, calibration.law.parameters.shear_nu_c, options), calibration, options,
-        control);
+    run(density_law_stage(quantity, of_law, cluster, calibration.law.parameters.shear_nu_c, options), calibration,
+        options, control);
+}
+
+void tie_errors(CalibratedLaw& law) {
+  for (const std::string prefix : {"", "steady_"}) {
+    const std::size_t from = parameter_index(prefix + "pressure.nu_c"),
+                      to = parameter_index(prefix + "coordination.nu_c");
+    if (law.estimates[to].status != Status::tied) continue;
+    const auto i = static_cast<Eigen::Index>(from), j = static_cast<Eigen::Index>(to);
+    law.estimates[to].standard_error = law.estimates[from].standard_error;
+    law.estimates[to].degrees_of_freedom = law.estimates[from].degrees_of_freedom;
+    law.covariance.row(j) = law.covariance.row(i);
+    law.covariance.col(j) = law.covariance.col(i);
+  }
 }
 
 bool all_converged(const Calibration& calibration) {

@@ -33,6 +33,9 @@ void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, c
 void fit_shear_laws(const DataSet& data, Calibration& calibration, const CalibrationOptions& options,
                     const RunControl& control);
 
+/// Gives jamming densities of Eq. (11) that are those of the pressure, where nobody counted contacts, their errors as they are now.
+void tie_errors(CalibratedLaw& law);
+
 bool all_converged(const Calibration& calibration);
 
 }  // namespace grainlaw::fit

@@ -20,8 +20,9 @@ bool has_value(const CalibratedLaw& law, std::size_t i) { return law.estimates[i
 
 /// Parameters, or groups of them, that the equations of `rung` read.
 std::vector<std::string_view> read_by(Rung rung, Coupling coupling) {
-  std::vector<std::string_view> groups{"coordination",     "rattlers",    "pressure",   "shear.nu_c",
-                                       "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"};
+  std::vector<std::string_view> groups{"coordination", "rattlers",         "pressure",
+                                       "shear.nu_c",   "stress_ratio_max", "stress_rate"};
+  if (rung != Rung::reduced) groups.insert(groups.end(), {"fabric_max", "fabric_rate"});
   if (rung == Rung::memory)
     groups.insert(groups.end(), {"steady_coordination", "steady_rattlers", "steady_pressure", "memory"});
   if (rung != Rung::reduced) groups.push_back(coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2");
@@ -66,6 +67,23 @@ bool has_values(const CalibratedLaw& law, std::string_view group) {
     if (is_of(parameter_table()[i].name, group) && !has_value(law, i)) return false;
   }
   return true;
+}
+
+bool knows_fabric(const LawParameters<double>& law) {
+  return !std::isnan(law.fabric_max.Q_limit + law.fabric_max.Q_c + law.fabric_rate.Q_limit + law.fabric_rate.Q_c);
+}
+
+void forget_unknown_fabric(CalibratedLaw& law) {
+  const auto value = fields(law.parameters);
+  for (const std::string_view group : {"fabric_max", "fabric_rate"}) {
+    bool known = true;
+    for (std::size_t i = 0; i < kParameterCount; ++i) {
+      if (is_of(parameter_table()[i].name, group)) known = known && (has_value(law, i) || without_exponential(law, i));
+    }
+    for (std::size_t i = 0; i < kParameterCount && !known; ++i) {
+      if (is_of(parameter_table()[i].name, group)) *value[i] = std::nan("");
+    }
+  }
 }
 
 std::optional<std::size_t> missing_parameter(const CalibratedLaw& law, Rung rung) {

@@ -56,7 +56,8 @@ struct ValidRange {
 
 struct CalibratedLaw {
   Coupling coupling = Coupling::energy;
-  LawParameters<double> parameters;                 ///< not identified ones stay at their start and must not be read
+  LawParameters<double>
+      parameters;  ///< not identified ones stay at their start (the fabric's: NaN) and must not be read
   std::array<Estimate, kParameterCount> estimates;  ///< in the order of parameter_table()
   Eigen::MatrixXd covariance;  ///< kParameterCount square, zero where there is no error; its degrees of freedom are the
                                ///< estimates'
@@ -73,6 +74,13 @@ bool says_nothing(const CalibratedLaw& law, std::size_t parameter);
 
 /// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
 bool has_values(const CalibratedLaw& law, std::string_view group);
+
+/// Whether the law says anything of the fabric, that is its laws of Eq. (20) have values.
+bool knows_fabric(const LawParameters<double>& law);
+
+/// Makes parameters of the fabric's laws, Eq. (20), that have no value NaN: the reduced rung, which is served without them, then says
+/// nothing of the fabric.
+void forget_unknown_fabric(CalibratedLaw& law);
 
 /// Index in parameter_table() of the first parameter that `rung` needs and that has no value; nothing where the law can
 /// serve the rung.

@@ -187,6 +187,7 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", name, error.what()));
   }
+  forget_unknown_fabric(law);
   if (document.contains("scatter")) law.scatter = scatter_from_json(document["scatter"]);
   const Json& ranges = document["ranges"];
   law.range.nu_min = ranges["nu"][0];

@@ -51,10 +51,20 @@ void check_path(const std::vector<StraightSegment>& segments, const std::vector<
   }
 }
 
-void check_start(const LawParameters<double>& parameters, double nu, const LawState<double>& start) {
+/// In the reduced model, nothing but the fabric depends on it.
+bool is_defined(const LawState<double>& state, Rung model) {
+  return model == Rung::reduced ? std::isfinite(state.P) && state.sigma.allFinite() : as_vector(state).allFinite();
+}
+
+void check_start(const LawParameters<double>& parameters, double nu, const LawState<double>& start, Rung model) {
+  if (model != Rung::reduced && start.F.array().isNaN().all())
+    throw InvalidInput(
+        fmt::format("the start tells no fabric, which the {} law starts from; start from the law's own values, or ask "
+                    "the reduced law",
+                    to_string(model)));
   for_each_part(
-      [](const StatePart& part, const auto& of_start) {
-        if (!numbers(of_start).allFinite())
+      [&](const StatePart& part, const auto& of_start) {
+        if (!numbers(of_start).allFinite() && !is_defined(start, model))
           throw InvalidInput(fmt::format("the state at the start of the prediction is not finite in {}", part.name));
       },
       start);
@@ -171,7 +181,7 @@ void conclude(Prediction& prediction, const ValidRange& range, std::chrono::stea
 
 LawState<double> state_from_law(const LawParameters<double>& parameters, double nu) {
   const LawState<double> state{.P = parameters.isotropic.P_star(nu)};
-  check_start(parameters, nu, state);
+  check_start(parameters, nu, state, Rung::reduced);
   return state;
 }
 
@@ -185,7 +195,8 @@ LawState<double> state_from_row(const Observation& row) {
   }
   const LawState<double> state{row.P_star, deviator<double>(row.stress.tensor) * (row.P_star / P),
                                deviator<double>(row.fabric.tensor)};
-  if (!as_vector(state).allFinite()) throw InvalidInput("the measured start has a stress or fabric that is not finite");
+  if (!is_defined(state, Rung::reduced) || !(state.F.allFinite() || row.fabric.tensor.array().isNaN().all()))
+    throw InvalidInput("the measured start has a stress or fabric that is not finite");
   return state;
 }
 
@@ -195,7 +206,7 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
                    const RunControl& control, const Sensitivity& sensitivity) {
   check_tolerances(tolerances);
   check_path(segments, points);
-  check_start(parameters, segments.front().nu_start, start);
+  check_start(parameters, segments.front().nu_start, start, model);
 
   const auto before = std::chrono::steady_clock::now();
   const PathStart from = start_of(parameters, segments.front().nu_start, start, sensitivity);
@@ -216,7 +227,7 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
     for (; k < static_cast<std::size_t>(index); ++k) path_before += segments[k].eps_dev_rate() * segments[k].length;
     const StraightSegment& segment = segments[k];
     const LawState<double>& state = path.states[i];
-    if (!as_vector(state).allFinite() || !(state.P >= 0)) {
+    if (!is_defined(state, model) || !(state.P >= 0)) {
       throw Error(
           fmt::format("segments[{}] at e = {:.9g}: the {} law gives a state that is not finite or P* < 0; "
                       "check the parameters",

@@ -9,6 +9,7 @@
 #include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
+#include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::predict {
@@ -27,7 +28,7 @@ OrderedJson curve_to_json(const PredictedCurve& curve) {
   return object;
 }
 
-PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
+PredictedCurve curve_from_json(const Json& object) {
   PredictedCurve curve;
   read_fields(object, curve);
   if (!is_safe_name(curve.file))
@@ -38,8 +39,21 @@ PredictedCurve curve_from_json(const Json& object, const fs::path& folder) {
   read_fields(object.at("events"), curve.prediction.events);
   curve.prediction.warnings = object.at("warnings").get<std::vector<std::string>>();
   read_fields(object.at("solver"), curve.prediction.statistics);
-  curve.prediction.rows = read_prediction_series(folder / curve.file);
   return curve;
+}
+
+/// What is wrong with a file, with its name.
+template <class Read>
+void read_named(const fs::path& file, const Read& read) {
+  const std::string name = one_line(file.string(), 200);
+  try {
+    read();
+  } catch (const Json::exception& error) {
+    throw InvalidInput(
+        fmt::format("{}: is not of this version: {}; run grainlaw predict again", name, one_line(error.what(), 200)));
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(fmt::format("{}: {}", name, one_line(error.what(), 300)));
+  }
 }
 
 /// The other way round of rung_to_json().
@@ -159,27 +173,26 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
 PredictionFolder read_prediction(const fs::path& folder) {
   PredictionFolder content;
   content.name = folder.filename().string();
-  fs::path file = folder / "prediction.json";
-  try {
-    const Json document = read_json(file, JsonSource::own);
-    content.path = path_from_json(document.at("path"), file.string(), "path.", true);
+  const fs::path file = folder / "prediction.json", compared = folder / "comparison.json";
+  const Json document = read_json(file, JsonSource::own);
+  read_named(file, [&] {
+    check_schema(document.at("path"), Schema::path, "path");
+    content.path = path_from_json(document.at("path"), "path", "", true);
     content.parameters = document.at("parameters");
     content.provenance = document.at("provenance");
     read_rung(document.at("rung"), content);
     content.bands = document.at("bands");
-    for (const Json& curve : document.at("curves")) content.curves.push_back(curve_from_json(curve, folder));
+    for (const Json& curve : document.at("curves")) content.curves.push_back(curve_from_json(curve));
     if (!document.at("rehearsals").is_null()) read_fields(document.at("rehearsals"), content.rehearsals.emplace());
     content.warnings = document.at("warnings").get<std::vector<std::string>>();
     read_fields(document.at("failures"), content.failures);
-    if (!document.at("dem").is_null()) {
-      content.dem = read_dataset(folder / "dem");
-      file = folder / "comparison.json";
-      read_fields(read_json(file, JsonSource::own).at("comparisons"), content.comparisons);
-    }
-  } catch (const Json::exception& error) {
-    throw InvalidInput(fmt::format("{}: is not of this version: {}; run grainlaw predict again",
-                                   one_line(file.string(), 200), one_line(error.what(), 200)));
-  }
+    document.at("dem");
+  });
+  for (PredictedCurve& curve : content.curves) curve.prediction.rows = read_prediction_series(folder / curve.file);
+  if (document["dem"].is_null()) return content;
+  content.dem = read_dataset(folder / "dem");
+  const Json comparison = read_json(compared, JsonSource::own);
+  read_named(compared, [&] { read_fields(comparison.at("comparisons"), content.comparisons); });
   return content;
 }
 

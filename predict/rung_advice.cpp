@@ -51,9 +51,9 @@ RungRecommendation recommended_rung(const std::vector<Rehearsal>& rehearsals,
   }
   const RungScore& best = table.front();
   std::string why = fmt::format(
-      "best on {} rehearsals ({}), rms error of P* {:.2g} B*, stress ratio {:.2g} s_max, fabric {:.2g} F_max",
-      spokesmen.rehearsals.size(), spokesmen.of_kind ? to_string(spokesmen.kind) : "of all kinds", best.rms[0],
-      best.rms[1], best.rms[2]);
+      "best on {} rehearsals ({}), rms error of P* {:.2g} B*, stress ratio {:.2g} s_max", spokesmen.rehearsals.size(),
+      spokesmen.of_kind ? to_string(spokesmen.kind) : "of all kinds", best.rms[0], best.rms[1]);
+  if (best.rms[2] > 0) why += fmt::format(", fabric {:.2g} F_max", best.rms[2]);
   for (std::size_t i = 1; i < table.size(); ++i) {
     std::array<double, 3> times{};
     for (std::size_t q = 0; q < times.size(); ++q) times[q] = table[i].rms[q] / best.rms[q];

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/run.sh [--full]: installs what is missing, builds Release, runs the tests.
-#   --full  adds the long tests, the other compiler, the sanitizer builds and the acceptance scripts.
+#   --full  adds the long tests, the other compiler, the sanitizer builds, the fuzzer and the acceptance scripts.
 # With CI=true in the environment warnings of the release build are errors. Exit code 0 only if everything passed.
 set -euo pipefail
 
@@ -41,6 +41,9 @@ fi
 for preset in "${presets[@]}"; do
   { build "$preset" && ctest --preset "$preset" --parallel "$jobs"; } || failed+=("$preset")
 done
+if command -v clang++-14 >/dev/null; then
+  tests/fuzz/run.sh --seconds 60 --grainlaw build/release/bin/grainlaw || failed+=(fuzz)
+fi
 for script in tests/acceptance/{pipeline,ground}.sh; do
   echo "== $script"
   bash "$script" || failed+=("$script")

@@ -23,6 +23,7 @@ struct CalibrateOptions {
   double max_cost = 0;                  ///< of everything together; 0: no limit [s]
   fit::Loss loss = fit::Loss::squares;
   int starts = 1;       ///< of the coupled fits
+  double iso_from = fit::CalibrationOptions{}.iso_nu_min;  ///< lowest volume fraction of ISO unloading that is fitted [-]
   bool checks = false;  ///< fits without one packing, likelihood profiles
   bool dry_run = false;
   std::string prior;  ///< prior.json of the errors, or "none"; empty: the built-in one
@@ -52,6 +53,7 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   fit::CalibrationOptions fit_options = chain::fit_options_of(input, session);
   fit_options.loss = options.loss;
   fit_options.starts = options.starts;
+  fit_options.iso_nu_min = options.iso_from;
   fit_options.profiles = options.checks;
   fit_options.coupling = options.coupling.value_or(fit_options.coupling);
   if (options.prior == "none")
@@ -104,6 +106,13 @@ Task declare_calibrate(CLI::App& command) {
   command.add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
       ->check(between(1, 10000))
       ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--iso-from", options->iso_from,
+                  "lowest volume fraction of isotropic unloading that is fitted: somewhat above jamming, which friction "
+                  "lowers")
+      ->check(between(0.5, 0.8))
+      ->type_name("NU")
       ->capture_default_str();
   command.add_flag("--checks", options->checks,
                    "fits without each packing in turn, and likelihood profiles of doubtful parameters; takes several "

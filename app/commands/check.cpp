@@ -50,9 +50,10 @@ ExitCode check(const CheckOptions& options, const Session& session) {
 Task declare_check(CLI::App& command) {
   const auto options = std::make_shared<CheckOptions>();
   command
-      .add_option("FILES", options->files,
-                  "SPEC, TEST, PATH, dataset.json, parameters.json, prior.json, series, table of spheres, state, or "
-                  "folder of a data set or calibration; a PATH is seen in the light of the others")
+      .add_option(
+          "FILES", options->files,
+          "SPEC, TEST, PATH, MAPPING, dataset.json, parameters.json, prior.json, series, table of spheres, state, or "
+          "folder of a data set or calibration; a PATH is seen in the light of the others")
       ->required()
       ->type_name("FILE");
   command.add_option("-o,--output", options->output, "folder whose finished runs count as done")

@@ -20,7 +20,9 @@ struct Command {
 };
 
 Task declare_simulate(CLI::App& command);
+Task declare_import(CLI::App& command);
 Task declare_calibrate(CLI::App& command);
+Task declare_export(CLI::App& command);
 Task declare_predict(CLI::App& command);
 Task declare_report(CLI::App& command);
 Task declare_study_integrator(CLI::App& command);

@@ -1,9 +1,13 @@
 // grainlaw simulate TEST.json -o DIR: one packing, or one element test.
 
+#include <fmt/format.h>
+
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
 #include "app/terminal/forecast_text.hpp"
 #include "app/terminal/result_text.hpp"
 #include "dem/runs/simulation.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace {
@@ -11,11 +15,15 @@ namespace {
 struct SimulateOptions {
   std::filesystem::path test;    ///< TEST.json
   std::filesystem::path output;  ///< folder for series, states, summary and the store of runs
+  std::optional<int> frames;     ///< states on the way of each segment; none: as TEST says
   bool dry_run = false;
 };
 
 ExitCode simulate(const SimulateOptions& options, Session& session) {
-  const dem::TestFile test = dem::read_test(options.test);
+  dem::TestFile test = dem::read_test(options.test);
+  if (options.frames && test.start == dem::Start::preparation)
+    throw InvalidInput(fmt::format("{}: --frames: a preparation has no frames; use 'keep'", options.test.string()));
+  test.frames = options.frames.value_or(test.frames);
   if (options.dry_run)
     return say_forecast(options.test.string(), chain::forecast(test, options.output, session), session);
   const dem::SimulationResult simulation = dem::simulate(test, options.output, session);
@@ -31,6 +39,9 @@ Task declare_simulate(CLI::App& command) {
   command.add_option("-o,--output", options->output, "folder for series, states and summary")
       ->required()
       ->type_name("DIR");
+  command.add_option("--frames", options->frames, "states kept on the way of each segment, at equal steps of the path")
+      ->check(between(0, 9000))
+      ->type_name("N");
   add_dry_run(command, options->dry_run);
   return [options](Session& session) { return simulate(*options, session); };
 }

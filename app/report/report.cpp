@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/report/figure_data.hpp"
 #include "app/report/figure_study.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/first_screen.hpp"
@@ -22,6 +23,13 @@ namespace {
 Block open(BlockContent content) { return {{std::move(content)}}; }
 Block folded(const std::string& summary, BlockContent content) { return {{std::move(content)}, summary}; }
 Block text(const std::string& words) { return open(Paragraph{plain(words)}); }
+
+/// What of the figure has data, or that none of it has.
+Block drawn(const Figure& whole) {
+  const Figure figure = with_data(whole);
+  if (!figure.panels.empty()) return open(figure);
+  return open(Paragraph{plain(whole.title + ": nothing to draw.") + figure.caption});
+}
 
 constexpr const char* kReading =
     "Symbols and thin lines in figures are DEM data, thick lines the law, dashed lines the published law; form of the "
@@ -57,7 +65,7 @@ Section predictions(const chain::ReportInput& input, const std::vector<chain::Pa
     const predict::PredictionFolder& prediction = input.predictions[i];
     Figure figure = prediction_figure(prediction, input.calibration.law, i);
     if (prediction.provenance.is_object()) figure.command = prediction.provenance.value("command", "");
-    section.blocks.push_back(open(std::move(figure)));
+    section.blocks.push_back(drawn(figure));
     section.blocks.push_back(folded(prediction.name + ": run by run", prediction_table(prediction)));
   }
   if (!input.predictions.empty())
@@ -157,7 +165,7 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
   const std::string command = fact_of(input, "command", "parameters.json");
   const auto of_calibrate = [&](Figure figure) {
     figure.command = command;
-    return open(std::move(figure));
+    return drawn(figure);
   };
   if (!modes.verdicts.empty()) {
     add("published", "Beside the published numbers, mode by mode",

@@ -62,6 +62,7 @@ std::string rehearsals_text(const predict::PredictionFolder& content) {
 std::string end_text(const predict::PredictedCurve& curve, bool recommended) {
   const predict::PredictedRow& end = curve.prediction.rows.back();
   const auto value = [](double x, double half_width) {
+    if (std::isnan(x)) return std::string("-");
     return std::isfinite(half_width) ? fmt::format("{:.4g} ± {:.2g}", x, half_width) : fmt::format("{:.4g}", x);
   };
   const auto half = [](double x) { return std::isfinite(x) ? fmt::format("± {:.2g}", x) : std::string(); };
@@ -80,6 +81,7 @@ std::string comparison_text(const predict::CurveComparison& entry) {
   std::string text, model = to_string(entry.model), initial = to_string(entry.initial);
   const auto share = [](double x) { return std::isfinite(x) ? fmt::format("{:.0f} %", 100 * x) : std::string(); };
   for (const auto& q : entry.comparison.quantities) {
+    if (q.rows == 0) continue;  // the law or the runs do not tell it
     text += fmt::format("{:<9} {:<10} {:<8} {:>+9.4f} {:>8.1f} % {:>12} {:>12}\n", std::exchange(model, ""),
                         std::exchange(initial, ""), q.quantity, q.bias, 100 * q.normalised_rms, share(q.coverage_mean),
                         share(q.coverage_single));

@@ -41,8 +41,9 @@ class ElementRun {
         stepper_(quasi_static_ ? make_quasi_static_stepper(segments, options, control.stop)
                                : make_time_stepper(segments, options)) {}
 
-  void start(const State& state) {
+  void start(const State& state, const StepObserver& on_start) {
     stepper_->start(state);
+    if (on_start) on_start(*stepper_, 0, 0);
     spheres_ = static_cast<double>(state.packing.size());
     at_.steps = stepper_->steps();
     take_row(segments_.empty() ? StraightSegment{} : segments_[0], 0);
@@ -119,7 +120,7 @@ class ElementRun {
 
   /// What is not the run itself: the observer, progress, and saving.
   void look() {
-    if (on_step_) on_step_(stepper_->simulation(), at_.segment, stepper_->place());
+    if (on_step_) on_step_(*stepper_, at_.segment, stepper_->place());
     watch_.tick(stepper_->fraction_done(), static_cast<double>(at_.steps) * spheres_);
     if (checkpointing_.save && seconds_since(saved_) >= checkpointing_.interval) save();
   }
@@ -152,10 +153,10 @@ class ElementRun {
 
 ElementTest run_element_test(const State& start, const std::vector<StraightSegment>& segments,
                              const ElementTestOptions& options, const RunControl& control, const StepObserver& on_step,
-                             const Checkpointing& checkpointing) {
+                             const Checkpointing& checkpointing, const StepObserver& on_start) {
   check_options(start, options);
   ElementRun run(segments, options, control, on_step, checkpointing);
-  run.start(start);
+  run.start(start, on_start);
   return run.run();
 }
 

@@ -15,6 +15,8 @@
 
 namespace grainlaw::dem {
 
+class Stepper;
+
 struct ElementTestOptions {
   EngineOptions engine;
   DriveOptions drive;
@@ -36,15 +38,16 @@ struct ElementTest {
                                       ///< stopped short; for the log
 };
 
-/// Sees the simulation after each step with the path's segment index and parameter e, e.g. to keep a state. After a continuation it sees the checkpoint's step once more.
-using StepObserver = std::function<void(Simulation&, int segment, double e)>;
+/// Sees the packing, by its stepper (dem/element_tests/stepper.hpp), after each step with the path's segment index and parameter e, e.g. to keep a state. After a continuation it sees the checkpoint's step once more.
+using StepObserver = std::function<void(Stepper&, int segment, double e)>;
 
 /// Runs `segments` (resolve() of the path at the state's own volume fraction) from `start`; time, step and ledger begin
-/// at zero. A row is taken at the first step that reaches its e; `strain` is that of the step. Throws InvalidInput for
+/// at zero; `on_start` sees the packing there. A row is taken at the first step that reaches its e; `strain` is that of the step. Throws InvalidInput for
 /// options out of range, Interrupted, and Error 'energy balance' (hard cases D9, D16) naming row and residual.
 ElementTest run_element_test(const State& start, const std::vector<StraightSegment>& segments,
                              const ElementTestOptions& options, const RunControl& control,
-                             const StepObserver& on_step = {}, const Checkpointing& checkpointing = {});
+                             const StepObserver& on_step = {}, const Checkpointing& checkpointing = {},
+                             const StepObserver& on_start = {});
 
 /// Goes on from a checkpoint of the same test (same segments and options but threads and checkpointing); the result is
 /// the uninterrupted run's, bit for bit. Throws InvalidInput for a checkpoint that cannot be one of this test's.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "dem/element_tests/stepper.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -160,10 +161,10 @@ class Preparation {
       }
       ++next;
     };
-    const auto on_step = [&](Simulation& sim, int, double e) {
+    const auto on_step = [&](Stepper& stepper, int, double e) {
       // e of an isotropic segment is |ln(nu/nu_0)|/3; rounding must not lose a density at its end
       while (next < densities.size() && e >= std::abs(std::log(densities[next] / nu_0)) / 3 - 1e-13) {
-        keep_state(sim.state());
+        keep_state(stepper.simulation().state());
       }
     };
     ElementTest test = drive_to(std::move(from), to_nu, branch_options(options_), to_string(branch), on_step);

@@ -4,6 +4,7 @@
 
 #include "dem/files/sealed_file.hpp"
 #include "dem/files/state_file.hpp"
+#include "model/files/whole_number.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -80,15 +81,15 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   Checkpoint c;
   read_sealed(file, kFormat, [&](const nlohmann::json& header, NumberReader& numbers) {
     c.stage = header.at("stage").get<std::string>();
-    c.steps_before = header.at("steps_before").get<std::uint64_t>();
-    c.segment = header.at("segment").get<int>();
-    c.segment_steps = header.at("segment_steps").get<std::uint64_t>();
-    c.steps = header.at("steps").get<std::uint64_t>();
+    c.steps_before = whole_number<std::uint64_t>(header.at("steps_before"));
+    c.segment = whole_number<int>(header.at("segment"));
+    c.segment_steps = whole_number<std::uint64_t>(header.at("segment_steps"));
+    c.steps = whole_number<std::uint64_t>(header.at("steps"));
     c.state = take_state(header, numbers);
     for (int i = 0; i < 9; ++i) c.segment_H(i / 3, i % 3) = numbers.number();
     c.time_step = numbers.number();
     c.seconds = numbers.number();
-    const auto rows = header.at("rows").get<std::uint64_t>();
+    const auto rows = whole_number<std::uint64_t>(header.at("rows"));
     if (rows > numbers.words_left()) throw InvalidInput("its size contradicts its header");
     for (std::uint64_t i = 0; i < rows; ++i) c.rows.push_back(take_row(numbers));
   });

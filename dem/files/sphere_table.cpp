@@ -5,82 +5,25 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <fstream>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
 
 #include "dem/engine/neighbour_list.hpp"
+#include "dem/files/text_file.hpp"
 #include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
-constexpr std::size_t kMaxLine = 1'000'000;
 constexpr std::size_t kMaxRows = 100'000'000;
 constexpr double kMaxCellsAway = 1000;
 
 enum Column : std::size_t { id, x, y, z, r, vx, vy, vz, kColumns };
 constexpr std::array<std::string_view, kColumns> kName{"id", "x", "y", "z", "r", "vx", "vy", "vz"};
 constexpr std::array<std::string_view, kColumns> kUnit{"", "m", "m", "m", "m", "m/s", "m/s", "m/s"};
-
-/// What is wrong where, as one line.
-InvalidInput refusal(const std::filesystem::path& file, std::size_t line, std::string_view column,
-                     const std::string& why) {
-  const std::string where =
-      column.empty() ? fmt::format("line {}", line) : fmt::format("line {}, column {}", line, column);
-  return InvalidInput(fmt::format("{}: {}: {}", file.string(), where, why));
-}
-
-/// Text of the file as it may be shown in a message.
-std::string quoted(std::string_view text) {
-  std::string shown;
-  for (const char c : text.substr(0, 40)) shown += (c >= ' ' && c <= '~') ? c : '?';
-  return "'" + shown + (text.size() > 40 ? "...'" : "'");
-}
-
-std::string_view trimmed(std::string_view text) {
-  const auto blank = [](char c) { return c == ' ' || c == '\t'; };
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Lines of bounded length; `row` is the number of the last one.
-class LineReader {
- public:
-  explicit LineReader(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
-    std::error_code failure;
-    if (!in_ || std::filesystem::is_directory(file, failure)) {
-      throw InvalidInput(fmt::format("{}: cannot be read; give a CSV file of spheres", file.string()));
-    }
-  }
-
-  bool next(std::string& line) {
-    line.clear();
-    auto& buffer = *in_.rdbuf();
-    int c = buffer.sbumpc();
-    if (c == std::char_traits<char>::eof()) return false;
-    ++row;
-    for (; c != std::char_traits<char>::eof() && c != '\n'; c = buffer.sbumpc()) {
-      if (c == 0) throw refusal(file_, row, "", "holds a NUL byte; give plain text");
-      if (line.size() == kMaxLine) throw refusal(file_, row, "", "is longer than 1 MB; give one sphere per line");
-      line.push_back(static_cast<char>(c));
-    }
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    return true;
-  }
-
-  std::size_t row = 0;
-
- private:
-  const std::filesystem::path& file_;
-  std::ifstream in_;
-};
 
 /// Calls visit(field number, field) for each field of the line.
 template <class Visit>
@@ -94,7 +37,8 @@ void split(std::string_view line, const Visit& visit) {
 }
 
 /// Which column each field of the file holds.
-std::vector<Column> read_header(const std::filesystem::path& file, std::string_view line) {
+std::vector<Column> read_header(const TextFile& lines) {
+  std::string_view line = lines.line();
   if (line.starts_with("\xef\xbb\xbf")) line.remove_prefix(3);  // byte order mark of spreadsheets
   std::vector<Column> order;
   std::array<bool, kColumns> seen{};
@@ -103,33 +47,25 @@ std::vector<Column> read_header(const std::filesystem::path& file, std::string_v
     const std::string_view name = trimmed(field.substr(0, bracket));
     const auto known = std::find(kName.begin(), kName.end(), name);
     if (known == kName.end()) {
-      throw refusal(file, 1, quoted(name),
-                    "is no column of a sphere table; give a header with id,x,y,z,r and, if "
-                    "known, vx,vy,vz, separated by commas");
+      throw lines.refusal(in_quotes(name),
+                          "is no column of a sphere table; give a header with id,x,y,z,r and, if "
+                          "known, vx,vy,vz, separated by commas");
     }
     const auto column = static_cast<Column>(known - kName.begin());
     if (bracket != std::string_view::npos && field.substr(bracket) != fmt::format("[{}]", kUnit[column])) {
-      throw refusal(file, 1, name,
-                    fmt::format("unit {} is not [{}]; convert it", quoted(field.substr(bracket)), kUnit[column]));
+      throw lines.refusal(
+          name, fmt::format("unit {} is not [{}]; convert it", in_quotes(field.substr(bracket)), kUnit[column]));
     }
-    if (seen[column]) throw refusal(file, 1, name, "appears twice");
+    if (seen[column]) throw lines.refusal(name, "appears twice");
     seen[column] = true;
     order.push_back(column);
   });
   for (std::size_t c = 0; c < vx; ++c) {
-    if (!seen[c]) throw refusal(file, 1, kName[c], "is missing");
+    if (!seen[c]) throw lines.refusal(kName[c], "is missing");
   }
   if (seen[vx] != seen[vy] || seen[vx] != seen[vz])
-    throw refusal(file, 1, "vx, vy, vz", "give all three velocities or none");
+    throw lines.refusal("vx, vy, vz", "give all three velocities or none");
   return order;
-}
-
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value{};
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 struct Sphere {
@@ -137,26 +73,26 @@ struct Sphere {
   std::array<double, kColumns> value{};  // SI; [id] unused
 };
 
-Sphere read_row(const std::filesystem::path& file, std::size_t row, std::string_view line,
-                const std::vector<Column>& order) {
+Sphere read_row(const TextFile& lines, const std::vector<Column>& order) {
+  const std::string_view line = lines.line();
   Sphere sphere;
   const auto fields = static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
   if (fields != order.size()) {
-    throw refusal(file, row, "",
-                  fmt::format("has {} fields, the header has {} (is a decimal comma in use?)", fields, order.size()));
+    throw lines.refusal(
+        "", fmt::format("has {} fields, the header has {} (is a decimal comma in use?)", fields, order.size()));
   }
   split(line, [&](std::size_t field, std::string_view text) {
     const Column column = order[field];
     if (column == id) {
-      const auto name = parse<std::int64_t>(text);
-      if (!name) throw refusal(file, row, "id", quoted(text) + " is no integer");
+      const auto name = integer(text);
+      if (!name) throw lines.refusal("id", in_quotes(text) + " is no integer");
       sphere.name = *name;
       return;
     }
-    const auto value = parse<double>(text);
-    if (!value) throw refusal(file, row, kName[column], quoted(text) + " is no number (decimal point, no thousands)");
-    if (!std::isfinite(*value)) throw refusal(file, row, kName[column], quoted(text) + " is not finite");
-    if (column == r && !(*value > 0)) throw refusal(file, row, "r", quoted(text) + " is not positive");
+    const auto value = decimal(text);
+    if (!value) throw lines.refusal(kName[column], in_quotes(text) + " is no number (decimal point, no thousands)");
+    if (!std::isfinite(*value)) throw lines.refusal(kName[column], in_quotes(text) + " is not finite");
+    if (column == r && !(*value > 0)) throw lines.refusal("r", in_quotes(text) + " is not positive");
     sphere.value[column] = *value;
   });
   return sphere;
@@ -173,11 +109,9 @@ void check_cell(const std::filesystem::path& file, const Eigen::Matrix3d& H) {
 
 State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cell, const Material& material) {
   check_cell(file, cell);
-  LineReader lines(file);
-  std::string line;
-  if (!lines.next(line))
-    throw refusal(file, 1, "", "the file is empty; give a header id,x,y,z,r and one line per sphere");
-  const std::vector<Column> order = read_header(file, line);
+  TextFile lines(file, "give a CSV file of spheres");
+  if (!lines.next()) throw lines.refusal(1, "", "the file is empty; give a header id,x,y,z,r and one line per sphere");
+  const std::vector<Column> order = read_header(lines);
 
   State state;
   state.material = material;
@@ -185,22 +119,21 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
   p.H = cell;
   const Eigen::Matrix3d inverse = cell.inverse();
   std::unordered_map<std::int64_t, std::size_t> row_of;
-  while (lines.next(line)) {
-    if (trimmed(line).empty()) {
-      while (lines.next(line)) {
-        if (!trimmed(line).empty()) throw refusal(file, lines.row, "", "follows an empty line; remove that");
+  while (lines.next()) {
+    if (trimmed(lines.line()).empty()) {
+      while (lines.next()) {
+        if (!trimmed(lines.line()).empty()) throw lines.refusal("", "follows an empty line; remove that");
       }
       break;
     }
-    const Sphere sphere = read_row(file, lines.row, line, order);
-    const auto [earlier, fresh] = row_of.emplace(sphere.name, lines.row);
-    if (!fresh)
-      throw refusal(file, lines.row, "id", fmt::format("{} is already in line {}", sphere.name, earlier->second));
-    if (p.size() == kMaxRows) throw refusal(file, lines.row, "", "more than 1e8 spheres are not supported");
+    const Sphere sphere = read_row(lines, order);
+    const auto [earlier, fresh] = row_of.emplace(sphere.name, lines.number());
+    if (!fresh) throw lines.refusal("id", fmt::format("{} is already in line {}", sphere.name, earlier->second));
+    if (p.size() == kMaxRows) throw lines.refusal("", "more than 1e8 spheres are not supported");
     const auto& value = sphere.value;
     const Eigen::Vector3d s = inverse * Eigen::Vector3d(value[x], value[y], value[z]);
     if (!(s.lpNorm<Eigen::Infinity>() <= kMaxCellsAway)) {
-      throw refusal(file, lines.row, "x, y, z", "the position lies more than 1000 cells away; are both in metres?");
+      throw lines.refusal("x, y, z", "the position lies more than 1000 cells away; are both in metres?");
     }
     p.id.push_back(sphere.name);
     p.radius.push_back(value[r]);
@@ -211,15 +144,15 @@ State read_spheres(const std::filesystem::path& file, const Eigen::Matrix3d& cel
     p.vy.push_back(value[vy]);
     p.vz.push_back(value[vz]);
   }
-  if (p.size() == 0) throw refusal(file, lines.row, "", "no spheres follow the header");
+  if (p.size() == 0) throw lines.refusal("", "no spheres follow the header");
+  p.mass.resize(p.size());
   try {
     check_sizes(p);
+    set_masses(p, material);
+    check(p);
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
   }
-  p.mass.resize(p.size());
-  set_masses(p, material);
-  check(p);
   return state;
 }
 

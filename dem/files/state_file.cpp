@@ -1,5 +1,6 @@
 #include "dem/files/state_file.hpp"
 
+#include "model/files/whole_number.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -57,10 +58,10 @@ void put_state(const State& state, NumberWriter& numbers) {
 
 State take_state(const nlohmann::json& header, NumberReader& numbers) {
   State state;
-  state.step = header.at("step").get<std::uint64_t>();
-  state.seed = header.at("seed").get<std::uint64_t>();
+  state.step = whole_number<std::uint64_t>(header.at("step"));
+  state.seed = whole_number<std::uint64_t>(header.at("seed"));
   state.digest = header.at("digest").get<std::string>();
-  const auto n = header.at("particles").get<std::uint64_t>();
+  const auto n = whole_number<std::uint64_t>(header.at("particles"));
   const bool accelerations = header.at("has_accelerations").get<bool>();
   const bool reference = header.at("has_list_reference").get<bool>();
   // before anything is allocated

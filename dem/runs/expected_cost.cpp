@@ -74,7 +74,7 @@ double rate_of_one(const State& state, const PreparationOptions& like, const Eng
       resolve({kMeasuredDensity, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 1}}});
   double steps = 0, seconds = 0;
   Clock::time_point first;
-  const auto count = [&](Simulation&, int, double) {
+  const auto count = [&](Stepper&, int, double) {
     if (steps == 0) first = Clock::now();
     ++steps;
     seconds = std::chrono::duration<double>(Clock::now() - first).count();

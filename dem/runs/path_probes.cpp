@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dem/element_tests/stepper.hpp"
 #include "dem/runs/run_store.hpp"
 #include "dem/statics/elastic_moduli.hpp"
 #include "model/files/column.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/output.hpp"
+#include "model/files/whole_number.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -39,7 +41,7 @@ bool PathProbes::take_up() {
   try {
     const OrderedJson progress(read_json(folder_ / kProgress, JsonSource::own));
     if (progress.at("sha256") != digest_of(progress)) return false;
-    done_ = progress.at("places").get<std::size_t>();
+    done_ = whole_number<std::size_t>(Json(progress.at("places")));
     lines_ = progress.at("rows").get<std::vector<std::string>>();
     warnings_ = progress.at("warnings").get<std::vector<std::string>>();
     return true;
@@ -57,11 +59,11 @@ double PathProbes::length_before(std::size_t segment) const {
 }
 
 StepObserver PathProbes::observer() {
-  return [this](Simulation& sim, int segment, double e) {
+  return [this](Stepper& stepper, int segment, double e) {
     const auto index = static_cast<std::size_t>(segment);
     const double length = length_before(index) + length_rate(segments_[index]) * e;
     if (length < request_.every * static_cast<double>(done_) - kRounding) return;
-    probe(sim.state(), segment, e);
+    probe(stepper.simulation().state(), segment, e);
     save();
   };
 }

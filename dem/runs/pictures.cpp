@@ -10,6 +10,7 @@
 #include "dem/runs/preparation_folder.hpp"
 #include "model/files/json_document.hpp"
 #include "model/files/output.hpp"
+#include "model/files/whole_number.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -64,6 +65,11 @@ PackingPicture from_json(const Json& json) {
   json.at("chains").get_to(picture.chains);
   json.at("count").get_to(picture.count);
   json.at("force").get_to(picture.force);
+  if (!(picture.width > 0 && picture.height > 0)) throw InvalidInput("width and height must be positive");
+  for (const auto* rose : {&picture.count, &picture.force}) {
+    if (rose->size() != std::size_t{kRoseBins} && !(picture.count.empty() && picture.force.empty()))
+      throw InvalidInput(fmt::format("count and force need {} numbers each, or none", kRoseBins));
+  }
   return picture;
 }
 
@@ -113,7 +119,7 @@ std::optional<ShearPictures> read_pictures(const fs::path& folder) {
     json.at("test").get_to(pictures.test);
     json.at("nu").get_to(pictures.nu);
     json.at("strain").get_to(pictures.strain);
-    json.at("particles").get_to(pictures.particles);
+    pictures.particles = whole_number<std::int64_t>(json.at("particles"));
     json.at("horizontal").get_to(pictures.horizontal);
     json.at("vertical").get_to(pictures.vertical);
     pictures.note = json.value("note", "");
@@ -121,6 +127,8 @@ std::optional<ShearPictures> read_pictures(const fs::path& folder) {
     pictures.after = from_json(json.at("after"));
     return pictures;
   } catch (const Json::exception& error) {
+    throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
+  } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", file.string(), error.what()));
   }
 }

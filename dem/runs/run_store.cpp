@@ -11,8 +11,10 @@
 #include <map>
 #include <vector>
 
+#include "model/files/dataset.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/execution.hpp"
+#include "model/files/fields_json.hpp"
 #include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -25,6 +27,17 @@ namespace {
 /// Besides the named ones, what a killed writer left under a temporary name.
 bool is_scratch(const std::string& name) {
   return name == kCheckpoint || name == kPreviousCheckpoint || name == kProgress || name.starts_with('.');
+}
+
+/// Whether the record has what is read of it later: numbers of the packing (null: of a preparation that kept none), cost.
+bool is_whole(const Json& record) {
+  PackingInfo packing;
+  RunCost cost;
+  read_fields(record.at("cost"), cost);
+  record.at("warnings").get<std::vector<std::string>>();
+  if (record.at("packing").is_null()) return true;
+  read_fields(record.at("packing"), packing);
+  return packing.particles > 0 && packing.mean_radius > 0 && packing.stiffness > 0;
 }
 
 void remove_scratch(const fs::path& run) {
@@ -81,7 +94,7 @@ std::optional<Json> RunStore::find(const std::string& key) const {
   if (!fs::exists(run / "run.json")) return std::nullopt;
   try {
     Json record = read_json(run / "run.json", JsonSource::own);
-    if (record.at("key") != key) return std::nullopt;
+    if (record.at("key") != key || !is_whole(record)) return std::nullopt;
     if (record.at("format_version") != 1 && record.at("sha256") != digest_of(record)) return std::nullopt;
     for (const auto& file : record.at("files").items()) {
       if (!is_safe_name(file.key()) || sha256_of_file(run / file.key()) != file.value()) return std::nullopt;

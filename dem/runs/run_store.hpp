@@ -33,7 +33,7 @@ class RunStore {
 
   std::filesystem::path folder(const std::string& key) const;
 
-  /// run.json of a finished run whose files are as they were written; nothing otherwise. Scratch files that a kill left
+  /// run.json of a finished run that is whole and whose files are as they were written; nothing otherwise. Scratch files that a kill left
   /// beside a finished run are removed.
   std::optional<Json> find(const std::string& key) const;
 

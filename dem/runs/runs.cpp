@@ -7,6 +7,7 @@
 
 #include "dem/files/state_file.hpp"
 #include "dem/runs/feasibility.hpp"
+#include "dem/runs/path_frames.hpp"
 #include "dem/runs/preparation_folder.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "model/files/fields_json.hpp"
@@ -63,6 +64,7 @@ Json request_of(const TestSetup& test) {
   const PreparationOptions& o = test.preparation;
   Json request{{"kind", "test"}, {"path", Json(path_to_json(test.path))}, {"rows", test.rows}};
   if (test.probes) request["probes"] = Json(fields_to_json(*test.probes));
+  if (test.frames > 0) request["frames"] = test.frames;
   if (!test.given) {
     request["packing"] = packing_identity(o);
     return request;
@@ -146,18 +148,31 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   const auto segments = resolve(test.path, o.engine.portable_bits);
   std::optional<PathProbes> probes;
   if (test.probes) probes.emplace(folder, *test.probes, segments, o.engine.threads, control);
+  std::optional<PathFrames> frames;
+  if (test.frames > 0) frames.emplace(folder, test.frames, segments, key);
   auto checkpoint = checkpoints.load();
+  if (checkpoint && frames && !frames->take_up()) {
+    if (policy.log) policy.log("starts anew: a frame that was kept before the checkpoint is damaged");
+    checkpoint.reset();
+  }
   if (checkpoint && probes && !probes->take_up()) {
     if (policy.log) policy.log("starts anew: what was probed before the checkpoint is damaged");
     checkpoint.reset();
   }
   if (!checkpoint) store.begin(key);
   const double earlier = checkpoint ? checkpoint->seconds : 0;
-  const StepObserver on_step = probes ? probes->observer() : StepObserver{};
-  const ElementTest done = checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control,
-                                                              on_step, checkpoints.checkpointing())
-                                      : run_element_test(start_state(store, test, control), segments, options, control,
-                                                         on_step, checkpoints.checkpointing());
+  const StepObserver to_probes = probes ? probes->observer() : StepObserver{},
+                     to_frames = frames ? frames->observer() : StepObserver{};
+  const StepObserver to_both = [&](Stepper& stepper, int segment, double e) {
+    to_probes(stepper, segment, e);
+    to_frames(stepper, segment, e);
+  };
+  const StepObserver& on_step = probes && frames ? to_both : frames ? to_frames : to_probes;
+  const ElementTest done =
+      checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
+                                         checkpoints.checkpointing())
+                 : run_element_test(start_state(store, test, control), segments, options, control, on_step,
+                                    checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
   write_series(folder / "series.csv", done.rows);
   std::vector<std::string> warnings = done.warnings;
   if (probes) {

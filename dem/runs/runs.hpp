@@ -27,6 +27,7 @@ struct TestSetup {
   std::string given_digest = {};              ///< SHA-256 of what `given` came from, cell included
   bool relax = false;                         ///< minimise `given` before the test
   std::optional<ProbeRequest> probes = std::nullopt;  ///< small-strain probes along the test
+  int frames = 0;  ///< states kept on the way of each segment, at equal steps of the path
 };
 
 /// The key of a run in the store, from what it is a function of. The kept states and rows of a preparation do not
@@ -44,7 +45,7 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
                         const RunControl& control);
 
 /// Likewise an element test; a preparation that it needs must be in the store. Files: series.csv,
-/// end.state, and probes.csv where it asks for probes.
+/// end.state, probes.csv where it asks for probes, and the states and frames.csv of path_frames.hpp.
 Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolicy& policy, const RunControl& control);
 
 /// The same as jobs of this name, without work when the run is in the store. Store, options and test must outlive the

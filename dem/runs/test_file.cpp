@@ -63,6 +63,9 @@ Start start_from(const Json& document, const std::string& name) {
   if (document.contains("probes") && start == Start::preparation) {
     throw InvalidInput(fmt::format("{}: probes: belong to a test; give initial, spheres or state", name));
   }
+  if (document.contains("frames") && start == Start::preparation) {
+    throw InvalidInput(fmt::format("{}: frames: belong to a test; give initial, spheres or state", name));
+  }
   if (start == Start::spheres && !document.contains("cell")) {
     throw InvalidInput(fmt::format("{}: misses the key 'cell'; give three rows of three numbers [m]", name));
   }
@@ -87,9 +90,7 @@ void check_given(const State& given, const EngineOptions& engine, const std::str
 
 }  // namespace
 
-TestFile read_test(const std::filesystem::path& file) {
-  const Json document = read_json(file, JsonSource::user);
-  const std::string name = one_line(file.string(), 200);
+TestFile test_from_document(const Json& document, const std::filesystem::path& folder, const std::string& name) {
   check_schema(document, Schema::test, name);
   TestFile test;
   test.start = start_from(document, name);
@@ -98,6 +99,7 @@ TestFile read_test(const std::filesystem::path& file) {
   test.rows = preparation.rows;
   preparation.packing.seed = document.value("seed", preparation.packing.seed);
   test.relax = document.value("relax", false);
+  test.frames = document.value("frames", 0);
   if (document.contains("probes")) read_given_fields(document["probes"], test.probes.emplace());
   const auto keep = [&](const Json& kept) {
     (branch_from_json(kept) == Branch::loading ? preparation.keep_loading : preparation.keep_unloading)
@@ -111,7 +113,7 @@ TestFile read_test(const std::filesystem::path& file) {
   if (made) complete_preparation(preparation, name);
   if (test.start == Start::preparation) return test;
 
-  const auto beside = [&](const char* key) { return file.parent_path() / document[key].get<std::string>(); };
+  const auto beside = [&](const char* key) { return folder / document[key].get<std::string>(); };
   if (test.start == Start::spheres) {
     test.given = read_spheres(beside("spheres"), cell_from(document["cell"]), preparation.packing.material);
     test.given_digest = sha256(sha256_of_file(beside("spheres")) + document["cell"].dump());
@@ -126,6 +128,10 @@ TestFile read_test(const std::filesystem::path& file) {
   test.path = path_from_json(path, name, "", false);
   check_path(test.path, preparation, name);
   return test;
+}
+
+TestFile read_test(const std::filesystem::path& file) {
+  return test_from_document(read_json(file, JsonSource::user), file.parent_path(), one_line(file.string(), 200));
 }
 
 }  // namespace grainlaw::dem

@@ -18,4 +18,7 @@ struct TestFile : TestSetup {
 /// Reads the file and those that it names (relative to its folder). Throws InvalidInput naming file, key or row.
 TestFile read_test(const std::filesystem::path& file);
 
+/// The same of a document that has been read, `name` in messages; the files that it names are relative to `folder`.
+TestFile test_from_document(const Json& document, const std::filesystem::path& folder, const std::string& name);
+
 }  // namespace grainlaw::dem

@@ -31,9 +31,10 @@ void check_test(const TestRecord& test, Role role) {
   }
   for (std::size_t k = 0; k < test.path.segments.size(); ++k) {
     if (!test.path.segments[k].spin.isZero(0)) {
-      refuse(test, fmt::format("segments[{}] spins, and the fit's laws know no rotation; give the test another role than "
-                               "calibration, its strain as a rate_tensor, or predict it",
-                               k));
+      refuse(test,
+             fmt::format("segments[{}] spins, and the fit's laws know no rotation; give the test another role than "
+                         "calibration, its strain as a rate_tensor, or predict it",
+                         k));
     }
   }
   check_series(test.rows, test.path, test.packing, "test " + test.name);
@@ -122,6 +123,17 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
     throw InvalidInput("calibration: no test is a shear at constant volume; add {\"mode\": \"D2\"} to the tests");
   }
   return data;
+}
+
+bool tells_fabric(const TestRecord& test) {
+  return std::ranges::any_of(test.rows, [](const Observation& row) { return row.fabric.tensor.allFinite(); });
+}
+
+bool counts_contacts(const TestRecord& test) {
+  const auto any = [&](double Observation::*value) {
+    return std::ranges::any_of(test.rows, [value](const Observation& row) { return !std::isnan(row.*value); });
+  };
+  return any(&Observation::C_star) && any(&Observation::rattler_fraction);
 }
 
 int packing_of(const DataSet& data, const TestRecord& test) {

@@ -24,6 +24,12 @@ struct DataSet {
 /// at constant volume.
 DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role = Role::calibration);
 
+/// Whether any row tells the fabric; whether any tells C* and the fraction of rattlers. What needs them leaves the others out.
+bool tells_fabric(const TestRecord& test);
+bool counts_contacts(const TestRecord& test);
+inline constexpr const char* kAddFabric = "no row tells the fabric; add the columns fabric_xx ... fabric_xy";
+inline constexpr const char* kAddContacts = "no row counts contacts; add the columns C_star and rattler_fraction";
+
 /// Independent of one another are packings (seeds), not the runs that start from one: the test's packing, from 0.
 int packing_of(const DataSet& data, const TestRecord& test);
 

@@ -11,6 +11,8 @@
 namespace grainlaw::fit {
 namespace {
 
+constexpr double kNone = Observation::undefined;
+
 void require(const TestRecord& test, std::size_t row, double value, const char* column) {
   if (!std::isfinite(value)) {
     throw InvalidInput(
@@ -21,6 +23,7 @@ void require(const TestRecord& test, std::size_t row, double value, const char* 
 
 DensityPoint point_of(const TestRecord& test, std::size_t number) {
   const Observation& row = test.rows[number];
+  if (!counts_contacts(test)) return {row.nu, kNone, kNone, row.P_star, row.fabric.tensor.trace(), row.mean_overlap};
   require(test, number, row.C_star, "C_star");
   require(test, number, row.rattler_fraction, "rattler_fraction");
   return {row.nu, row.C_star, row.rattler_fraction, row.P_star, row.fabric.tensor.trace(), row.mean_overlap};
@@ -92,6 +95,14 @@ std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const C
     all.push_back(series);
   }
   return all;
+}
+
+std::vector<DensitySeries> with_contacts(const std::vector<DensitySeries>& series) {
+  std::vector<DensitySeries> counted;
+  for (const DensitySeries& s : series) {
+    if (!std::isnan(s.points.front().C())) counted.push_back(s);
+  }
+  return counted;
 }
 
 double least_nu(const std::vector<DensitySeries>& series) {

@@ -10,10 +10,10 @@ namespace grainlaw::fit {
 
 struct DensityPoint {
   double nu = 0;                ///< volume fraction [-]
-  double C_star = 0;            ///< corrected coordination number [-]
-  double rattler_fraction = 0;  ///< phi_r [-]
+  double C_star = 0;            ///< corrected coordination number; NaN where the test counts no contacts [-]
+  double rattler_fraction = 0;  ///< phi_r, likewise [-]
   double P_star = 0;            ///< [-]
-  double F_v = 0;               ///< trace of the fabric [-]
+  double F_v = 0;               ///< trace of the fabric; NaN where the test does not tell it [-]
   double mean_overlap = 0;      ///< <delta>_c/<r>; NaN where the data set does not contain it [-]
 
   double C() const { return (1 - rattler_fraction) * C_star; }  ///< modified coordination number [-]
@@ -28,7 +28,8 @@ struct DensitySeries {
 };
 
 /// Rows of those segments of `tests` in which the volume grows, with nu >= iso_nu_min; tests without any are absent. Throws
-/// InvalidInput naming test, row and column when a coordination number or rattler fraction of a jammed row is missing.
+/// InvalidInput naming test, row and column when a coordination number or rattler fraction of a jammed row is missing where other
+/// rows have it.
 std::vector<DensitySeries> unloading_series(const std::vector<const TestRecord*>& tests, const DataSet& data,
                                             const CalibrationOptions& options);
 
@@ -38,6 +39,9 @@ std::vector<DensitySeries> isotropic_series(const DataSet& data, const Calibrati
 /// One point per test of `mode` at constant volume: means over eps_dev >= steady_from, or from where the
 /// test is steady if that is later. Tests that end before, or are not jammed there, are absent.
 std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const CalibrationOptions& options);
+
+/// Those of tests that count contacts.
+std::vector<DensitySeries> with_contacts(const std::vector<DensitySeries>& series);
 
 /// Smallest volume fraction of all points.
 double least_nu(const std::vector<DensitySeries>& series);

@@ -113,6 +113,8 @@ std::vector<std::string> outlier_warnings(const DataSet& data, const Calibration
         const std::vector<std::size_t> rows = rows_of(*test, segment, options);
         std::vector<double> x;
         for (const std::size_t i : rows) x.push_back(column.value(test->rows[i]));
+        if (std::ranges::any_of(x, [](double value) { return std::isnan(value); }))
+          continue;  // the test does not tell it
         for (const std::size_t i : outliers_of(x, kMaterial * column.scale))
           found.push_back(rows[i] + 1);  // as in a file
       }

@@ -87,7 +87,8 @@ SteadyOnset steady_onset(const TestRecord& test) {
     P.push_back(state.P);
   }
   const auto onset = [&](const std::vector<double>& x) {
-    const int row = steady_row(x);
+    const bool told = std::ranges::none_of(x, [](double value) { return std::isnan(value); });
+    const int row = told ? steady_row(x) : -1;
     return row < 0 ? std::numeric_limits<double>::quiet_NaN() : eps_dev[static_cast<std::size_t>(row)];
   };
   return {onset(s), onset(F), onset(P)};

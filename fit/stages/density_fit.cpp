@@ -153,6 +153,30 @@ StageDefinition pressure_stage(const StateLawName& of, const std::vector<Density
 
 }  // namespace
 
+StageDefinition pressure_of_assumed_contacts(const StateLawName& of, const std::vector<DensitySeries>& series,
+                                             const std::string& window) {
+  StageDefinition stage = pressure_stage(of, series, window);
+  stage.window += "; C by Eqs. (11), (12) as published, from the nu_c of the pressure on";
+  stage.blocks = [of, series](const LawParameters<double>& law) {
+    const auto C_of = [assumed = law.*of.law](const auto& nu_c, double nu) {
+      using T = std::decay_t<decltype(nu_c)>;
+      const Coordination<double>& c = assumed.coordination;
+      const Rattlers<double>& r = assumed.rattlers;
+      return StateLaw<T>{{T(c.C1), T(c.alpha), nu_c}, {T(r.phi_c), T(r.phi_v)}, {}}.C(nu);
+    };
+    return blocks_of<Jet3>(
+        series, "P_scaled", 3,
+        [C_of](const DensityPoint& p, const auto* x) {
+          using T = std::decay_t<decltype(*x)>;
+          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) - x[2] * (p.P_star / (p.nu * C_of(x[2], p.nu)));
+        },
+        [C_of, nu_c = (law.*of.law).pressure.nu_c](const DensityPoint& p) {
+          return nu_c * p.P_star / (p.nu * C_of(nu_c, p.nu));
+        });
+  };
+  return stage;
+}
+
 std::vector<StageDefinition> state_law_stages(const StateLawName& of, const std::vector<DensitySeries>& series,
                                               const std::string& window) {
   return {coordination_stage(of, series, window), rattlers_stage(of, series, window),
@@ -188,7 +212,11 @@ StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const st
   return stage;
 }
 
-StageDefinition fabric_trace_stage(const std::vector<DensitySeries>& series, const std::string& window) {
+StageDefinition fabric_trace_stage(const std::vector<DensitySeries>& all, const std::string& window) {
+  std::vector<DensitySeries> series = with_contacts(all);
+  std::erase_if(series, [](const DensitySeries& s) { return std::isnan(s.points.front().F_v); });
+  if (series.empty())
+    return left_out("fabric_trace", parameters_of("fabric"), with_contacts(all).empty() ? kAddContacts : kAddFabric);
   StageDefinition stage = density_stage("fabric_trace", "fabric", window, series);
   stage.window += ", measured C";
   stage.blocks = [series](const LawParameters<double>&) {

@@ -25,13 +25,16 @@ inline constexpr StateLawName kSteadyLaw{"steady_", &LawParameters<double>::stea
 /// rattlers) parameters are not identified.
 std::vector<StageDefinition> state_law_stages(const StateLawName& of, const std::vector<DensitySeries>& series,
                                               const std::string& window);
+/// Stage "pressure" of tests that count no contacts: C in Eqs. (14), (15) is that of `law`, with the free nu_c for its own.
+StageDefinition pressure_of_assumed_contacts(const StateLawName& of, const std::vector<DensitySeries>& series,
+                                             const std::string& window);
 /// They without any data.
 std::vector<StageDefinition> left_out_state_law(const StateLawName& of, const std::string& remedy);
 
 /// Stage "overlap": D of Eq. (13) with `nu_c` of the pressure. Left out when the data set does not contain overlaps.
 StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const std::string& window, double nu_c);
 
-/// Stage "fabric_trace": g3.
+/// Stage "fabric_trace": g3. Left out when the tests tell no fabric or count no contacts.
 StageDefinition fabric_trace_stage(const std::vector<DensitySeries>& series, const std::string& window);
 
 }  // namespace grainlaw::fit

@@ -105,6 +105,10 @@ StageDefinition density_law_stage(const ShearQuantity& quantity, const std::vect
   std::vector<double> nu;
   for (const DensityValue& v : values) nu.push_back(v.nu);
   const int found = distinct_densities(nu);
+  const bool without_fabric = !shear.empty() && std::ranges::all_of(shear, [&](const ShearFit& fit) {
+    return (fit.*quantity.estimate).note == kAddFabric;
+  });
+  if (without_fabric) return left_out(name, parameters_of(name), kAddFabric);
   const std::string remedy = fmt::format(
       "{} of at least {} densities with shear at constant volume that shows {}; test more densities, each to eps_dev "
       ">= {:g}",

@@ -24,13 +24,15 @@ ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories) {
   return sorted;
 }
 
+StageDefinition no_lode(const std::string& why) {
+  StageDefinition none = left_out("lode", parameters_of("lode"), why);
+  for (NamedEstimate& e : none.absent) e.estimate.status = Status::fixed;  // at 0
+  return none;
+}
+
 StageDefinition lode_stage(const std::vector<Trajectory>& others, const CalibrationOptions& options) {
-  if (std::all_of(others.begin(), others.end(), [](const Trajectory& t) { return t.rows.empty(); })) {
-    StageDefinition none =
-        left_out("lode", parameters_of("lode"), "taken as none: the shear has one Lode angle; add D3 to D2");
-    for (NamedEstimate& e : none.absent) e.estimate.status = Status::fixed;  // at 0
-    return none;
-  }
+  if (std::all_of(others.begin(), others.end(), [](const Trajectory& t) { return t.rows.empty(); }))
+    return no_lode("taken as none: the shear has one Lode angle; add D3 to D2");
   StageDefinition stage;
   stage.name = "lode";
   stage.window = "shear at constant volume unlike D2, rows and weights of the stage evolution";

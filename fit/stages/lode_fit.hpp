@@ -21,4 +21,7 @@ ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories);
 /// Stage "lode" on trajectories of another Lode angle. Without any both effects are fixed at zero.
 StageDefinition lode_stage(const std::vector<Trajectory>& others, const CalibrationOptions& options);
 
+/// The stage when both effects are taken as none.
+StageDefinition no_lode(const std::string& why);
+
 }  // namespace grainlaw::fit

@@ -189,7 +189,10 @@ ShearFit fit_shear(const TestRecord& test, double nu_c, const CalibrationOptions
     rate = curve.rate;
   };
   run("s_par", s, options.stress_scale, fit.s_max, fit.beta_s);
-  run("F_par", F, options.fabric_scale, fit.F_max, fit.beta_F);
+  if (tells_fabric(test))
+    run("F_par", F, options.fabric_scale, fit.F_max, fit.beta_F);
+  else
+    for (Estimate* e : {&fit.F_max, &fit.beta_F}) *e = {0, kUndefined, Status::not_identified, kAddFabric};
   return fit;
 }
 

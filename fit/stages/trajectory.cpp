@@ -46,6 +46,7 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
   t.direction = law_direction(StrainRate{D});
   t.axes = axes_of(test);
   t.starts_on_law = t.axes.empty();
+  if (t.starts_on_law && !t.start.F.allFinite()) t.start.F.setZero();  // isotropic compression does not read it
   const double nu_min = t.starts_on_law ? std::max(nu_c, options.iso_nu_min) : nu_c;
   const bool constant_volume = std::abs(t.direction.dx) <= 1e-12 * D.norm();
 
@@ -56,7 +57,8 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
     if (test.rows[i].nu <= nu_min || !is_jammed(test.rows[i]) || !is_jammed(start))
       break;  // the start too is a row here
     if (!e.empty() && at < e.back()) {
-      throw InvalidInput(fmt::format("test {}: row {} goes back on its segment; sort the rows by time", test.name, i + 1));
+      throw InvalidInput(
+          fmt::format("test {}: row {} goes back on its segment; sort the rows by time", test.name, i + 1));
     }
     e.push_back(at);
     strain.push_back(at * std::max(t.direction.de, std::abs(t.direction.dx)));

@@ -30,7 +30,8 @@ struct Trajectory {
   std::string test;
   int cluster = 0;
   int segment = 0;
-  bool starts_on_law = false;          ///< P by Eq. (14) at nu_start, else all of `start`
+  bool starts_on_law =
+      false;  ///< P by Eq. (14) at nu_start, else all of `start`, whose fabric is NaN if the test tells none
   LawState<double> start;              ///< measured; s_r the measured ratio at the reversal before, if any
   double nu_start = 0;                 ///< [-]
   LawDirection direction;              ///< per unit of e

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -137,11 +138,14 @@ std::vector<const Column<Row>*> matched(const CsvReader& reader) {
   return found;
 }
 
-/// Puts a value into its place in the row; refuses an empty field where there must be a number.
+/// Puts a value into its place in the row; refuses an empty field where there must be a number, and a broken or huge one where
+/// it must be whole.
 template <class Row>
 void set_value(const CsvReader& reader, Row& row, const Column<Row>& column, double value) {
   if (std::isnan(value) && column.defined())
     reader.refuse(column.title(), "is empty; this column needs a number in every row");
+  if (column.whole && !(value == std::trunc(value) && std::abs(value) <= std::numeric_limits<int>::max()))
+    reader.refuse(column.title(), fmt::format("is {}; this column needs a whole number", value));
   column.set(row, value);
 }
 

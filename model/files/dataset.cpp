@@ -26,6 +26,7 @@ OrderedJson identity(const DatasetTest& test) {
                        {"path", path_to_json(test.record.path)},
                        {"packing", fields_to_json(test.record.packing)},
                        {"sha256", test.sha256}};
+  if (test.record.packing.friction > 0) identity["packing"]["friction"] = test.record.packing.friction;
   if (!test.probes_sha256.empty()) identity["probes_sha256"] = test.probes_sha256;
   return identity;
 }
@@ -48,6 +49,7 @@ DatasetTest read_test(const Json& object, const fs::path& folder, const std::str
   test.record.role = value_of<Role>(object["role"].get<std::string>(), "role");
   test.record.path = path_from_json(object["path"], index, place + ".path.", true);
   read_given_fields(object["packing"], test.record.packing);
+  test.record.packing.friction = object["packing"].value("friction", 0.0);
   const fs::path file = folder / (test.record.name + ".csv");
   test.record.rows = read_series(file, test.record.path, test.record.packing);
   test.sha256 = sha256_of_file(file);
@@ -116,6 +118,9 @@ void write_dataset_index(const fs::path& folder, Dataset& dataset) {
   for (DatasetTest& test : dataset.tests) {
     test.sha256 = sha256_of_file(folder / (test.record.name + ".csv"));
     OrderedJson object = identity(test);
+    for (const char* key : {"size_width", "particles"}) {  // unknown
+      if (object["packing"][key] == 0) object["packing"].erase(key);
+    }
     object["rows"] = test.record.rows.size();
     if (!test.run.empty()) object["run"] = test.run;
     object["cost"] = fields_to_json(test.cost);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/files/json_document.hpp"
+#include "model/files/whole_number.hpp"
 #include "model/vocabulary/enum_names.hpp"
 #include "model/vocabulary/fields.hpp"
 
@@ -57,6 +58,8 @@ void take(const Json& json, const char* name, Value& value) {
     value = value_of<Value>(json.get<std::string>(), name);
   } else if constexpr (std::is_same_v<Value, double>) {
     value = number_or_nan(json);
+  } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+    value = whole_number<Value>(json);
   } else if constexpr (requires { value.has_value(); }) {
     value.reset();
     if (!json.is_null()) take(json, name, value.emplace());

@@ -6,7 +6,7 @@
 
 namespace grainlaw {
 
-/// At most `limit` bytes (and "..." when cut); bytes below 0x20 and 0x7f are escaped.
+/// At most `limit` bytes (and "..." when cut); control characters, U+0080 to U+009F and what turns the direction of text are escaped.
 std::string one_line(std::string_view text, std::size_t limit = 600);
 
 }  // namespace grainlaw

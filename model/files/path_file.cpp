@@ -99,7 +99,7 @@ std::vector<PathSegment> segments_from_csv(const std::filesystem::path& file, do
 }
 
 /// The path of `document`, its segments written out or measured.
-Path path_of(const Json& document, const std::filesystem::path& file, const std::string& name) {
+Path path_of(const Json& document, const std::filesystem::path& folder, const std::string& name) {
   const bool measured = document.contains("strain_csv");
   if (measured == document.contains("segments")) {
     throw InvalidInput(measured ? fmt::format("{}: has segments and strain_csv; give one of them", name)
@@ -109,21 +109,23 @@ Path path_of(const Json& document, const std::filesystem::path& file, const std:
   Path path;
   path.nu = document["initial"]["nu"].get<double>();
   path.branch = branch_from_json(document["initial"]);
-  path.segments = segments_from_csv(file.parent_path() / document["strain_csv"].get<std::string>(), path.nu);
+  path.segments = segments_from_csv(folder / document["strain_csv"].get<std::string>(), path.nu);
   return path;
 }
 
 }  // namespace
 
-PathFile read_path(const std::filesystem::path& file) {
-  const Json document = read_json(file, JsonSource::user);
-  const std::string name = one_line(file.string(), 200);
+PathFile path_from_document(const Json& document, const std::filesystem::path& folder, const std::string& name) {
   check_schema(document, Schema::path, name);
   PathFile result;
-  result.path = path_of(document, file, name);
+  result.path = path_of(document, folder, name);
   if (document.contains("seeds")) result.seeds = document["seeds"].get<std::vector<std::uint64_t>>();
   if (document.contains("rows")) result.rows = document["rows"].get<int>();
   return result;
+}
+
+PathFile read_path(const std::filesystem::path& file) {
+  return path_from_document(read_json(file, JsonSource::user), file.parent_path(), one_line(file.string(), 200));
 }
 
 }  // namespace grainlaw

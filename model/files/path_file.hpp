@@ -25,4 +25,7 @@ struct PathFile {
 /// missing or absurd, a volume fraction beyond 0.9, more than 10000 segments.
 PathFile read_path(const std::filesystem::path& file);
 
+/// The same of a document that has been read, `name` in messages; strain_csv is relative to `folder`.
+PathFile path_from_document(const Json& document, const std::filesystem::path& folder, const std::string& name);
+
 }  // namespace grainlaw

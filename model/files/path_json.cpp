@@ -150,9 +150,9 @@ std::vector<PathSegment> segments_from_json(const Json& segments, const std::str
 
 Path path_from_json(const Json& document, const std::string& name, const std::string& place, bool both) {
   Path path;
-  path.nu = document["initial"]["nu"].get<double>();
+  path.nu = document.at("initial").at("nu").get<double>();
   path.branch = branch_from_json(document["initial"]);
-  path.segments = segments_from_json(document["segments"], name, place, both);
+  path.segments = segments_from_json(document.at("segments"), name, place, both);
   try {
     check(path);
   } catch (const InvalidInput& error) {

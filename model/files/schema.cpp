@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <utility>
@@ -27,13 +28,11 @@ using Place = std::vector<std::string>;
 
 constexpr std::size_t kMostViolations = 50;  // that are told of one document
 
-/// By the schema library; `schema` must be free of references. The violation deepest in the document comes first, then what it
-/// makes of the objects around it, then others; not more than kMostViolations.
-std::vector<Place> violations_by_library(const Json& document, const Json& schema) {
-  valijson::Schema compiled;
-  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(schema), compiled);
+/// By the schema library. The violation deepest in the document comes first, then what it makes of the objects around it, then
+/// others; not more than kMostViolations.
+std::vector<Place> violations_by_library(const Json& document, const valijson::Schema& schema) {
   valijson::ValidationResults results;
-  if (valijson::Validator().validate(compiled, valijson::adapters::NlohmannJsonAdapter(document), &results)) return {};
+  if (valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(document), &results)) return {};
   std::vector<Place> places;
   valijson::ValidationResults::Error error;
   while (results.popError(error)) {
@@ -188,7 +187,7 @@ Json without_unique_items(Json node) {
 }
 
 struct Schemas {
-  std::map<Schema, Json> whole, for_library;
+  std::map<Schema, Json> whole;
 
   Schemas() {
     for (const auto& [which, file] : {std::pair{Schema::spec, "spec.schema.json"},
@@ -199,9 +198,9 @@ struct Schemas {
                                       {Schema::study, "study.schema.json"},
                                       {Schema::study_settings, "study_settings.schema.json"},
                                       {Schema::plan, "plan.schema.json"},
-                                      {Schema::prior, "prior.schema.json"}}) {
+                                      {Schema::prior, "prior.schema.json"},
+                                      {Schema::mapping, "import.schema.json"}}) {
       whole[which] = load(file);
-      for_library[which] = without_unique_items(whole[which]);
     }
   }
 };
@@ -209,6 +208,19 @@ struct Schemas {
 const Schemas& schemas_built_in() {
   static const Schemas all;
   return all;
+}
+
+/// As the schema library takes it, made once: to make it takes longer than to judge by it.
+const valijson::Schema& for_library(Schema which) {
+  static std::mutex guard;
+  static std::map<Schema, valijson::Schema> all;
+  const std::lock_guard<std::mutex> lock(guard);
+  const auto [made, fresh] = all.try_emplace(which);
+  if (fresh) {
+    const Json text = without_unique_items(schema(which));
+    valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(text), made->second);
+  }
+  return made->second;
 }
 
 /// "NAME: KEY: got ...; give ...", one for each wrong key there; where there is none, for the value itself unless what is
@@ -253,7 +265,7 @@ std::vector<std::string> schema_violations(const Json& document, Schema which, c
   if (const auto of_array = first_array_violation(document, schema(which)))
     places = {*of_array};
   else
-    places = violations_by_library(document, schemas_built_in().for_library.at(which));
+    places = violations_by_library(document, for_library(which));
   std::vector<std::string> all;
   for (auto place = places.begin(); place != places.end(); ++place) {
     const bool within = std::any_of(places.begin(), place, [&](const Place& inner) {

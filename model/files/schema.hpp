@@ -9,7 +9,7 @@
 
 namespace grainlaw {
 
-enum class Schema { spec, path, test, dataset, parameters, study, study_settings, plan, prior };
+enum class Schema { spec, path, test, dataset, parameters, study, study_settings, plan, prior, mapping };
 
 /// The schema with every reference replaced by what it refers to.
 const Json& schema(Schema which);

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "model/files/column.hpp"
 #include "model/files/one_line.hpp"
@@ -13,6 +15,31 @@
 
 namespace grainlaw {
 namespace {
+
+/// The columns that follow from others.
+constexpr std::array<std::pair<const char*, double Observation::*>, 9> kFollowing{
+    {{"eps_vol", &Observation::eps_vol},
+     {"eps_dev", &Observation::eps_dev},
+     {"shear_path", &Observation::shear_path},
+     {"P_star", &Observation::P_star},
+     {"s_dev", &Observation::s_dev},
+     {"s_par", &Observation::s_par},
+     {"F_v", &Observation::F_v},
+     {"F_dev", &Observation::F_dev},
+     {"F_par", &Observation::F_par}}};
+
+Observation completed(Observation row, const Observation* before, double stress_unit, const Deviator<double>& N) {
+  set_strain(row, row.strain);
+  row.shear_path =
+      before == nullptr
+          ? 0
+          : before->shear_path + (deviator<double>(row.strain.tensor) - deviator<double>(before->strain.tensor)).norm();
+  const double P = row.stress.tensor.trace() / 3;
+  set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
+  row.P_star = P / stress_unit;
+  row.F_v = row.fabric.tensor.trace();
+  return row;
+}
 
 class SeriesReader {
  public:
@@ -26,12 +53,17 @@ class SeriesReader {
     if (path.segments.size() > 1 && !given_.contains("segment")) {
       reader_.refuse("", "misses the column 'segment': the path has several segments");
     }
+    const auto fabrics =
+        std::ranges::count_if(given_, [](const std::string& name) { return name.starts_with("fabric_"); });
+    if (fabrics != 0 && fabrics != 6)
+      reader_.refuse("", fmt::format("has {} of the six columns of fabric; give all or none", fabrics));
   }
 
   std::vector<Observation> read() {
     std::vector<double> values;
     while (reader_.next(values)) {
       Observation row;
+      row.fabric.tensor.setConstant(Observation::undefined);
       for (std::size_t i = 0; i < values.size(); ++i) set(row, *columns_[i], values[i]);
       complete(row);
       rows_.push_back(row);
@@ -54,32 +86,17 @@ class SeriesReader {
 
   /// What follows from other columns, where its own is absent.
   void complete(Observation& row) {
-    const auto derive = [&](const char* column, double& value, double computed) {
-      if (!given_.contains(column)) value = computed;
-    };
-    Observation derived;  // what the given tensors say
-    set_strain(derived, row.strain);
-    derive("eps_vol", row.eps_vol, derived.eps_vol);
-    derive("eps_dev", row.eps_dev, derived.eps_dev);
-    const bool first = rows_.empty();
-    derive("shear_path", row.shear_path,
-           first ? 0
-                 : rows_.back().shear_path +
-                       (deviator<double>(row.strain.tensor) - deviator<double>(rows_.back().strain.tensor)).norm());
+    const Observation* before = rows_.empty() ? nullptr : &rows_.back();
     // a corner of the path may be seen twice, at the end of one segment and the start of the next
-    const bool corner = !first && row.segment > rows_.back().segment && row.time == rows_.back().time;
-    if (!first && !corner && row.time <= rows_.back().time)
+    const bool corner = before != nullptr && row.segment > before->segment && row.time == before->time;
+    if (before != nullptr && !corner && row.time <= before->time)
       reader_.refuse("time[s]", "does not grow from the row before");
-    if (!first && row.segment < rows_.back().segment) reader_.refuse("segment", "falls behind that of the row before");
-
-    const double P = row.stress.tensor.trace() / 3;
-    set_ratios(derived, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N_);
-    derive("P_star", row.P_star, P / packing_.stress_unit());
-    derive("s_dev", row.s_dev, derived.s_dev);
-    derive("s_par", row.s_par, derived.s_par);
-    derive("F_v", row.F_v, row.fabric.tensor.trace());
-    derive("F_dev", row.F_dev, derived.F_dev);
-    derive("F_par", row.F_par, derived.F_par);
+    if (before != nullptr && row.segment < before->segment)
+      reader_.refuse("segment", "falls behind that of the row before");
+    const Observation all = completed(row, before, packing_.stress_unit(), N_);
+    for (const auto& [column, value] : kFollowing) {
+      if (!given_.contains(column)) row.*value = all.*value;
+    }
   }
 
   CsvReader reader_;
@@ -97,6 +114,12 @@ std::string series_text(const std::vector<Observation>& rows) { return table_tex
 
 void write_series(const std::filesystem::path& file, const std::vector<Observation>& rows) {
   write_durably(file, series_text(rows));
+}
+
+void complete(std::vector<Observation>& rows, const Path& path, const PackingInfo& packing) {
+  const Deviator<double> N = shear_direction(resolve(path));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    rows[i] = completed(rows[i], i == 0 ? nullptr : &rows[i - 1], packing.stress_unit(), N);
 }
 
 std::vector<Observation> read_series(const std::filesystem::path& file, const Path& path, const PackingInfo& packing) {

@@ -4,28 +4,26 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "model/vocabulary/direction_check.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {
 
-constexpr double kConsistency = 5e-4;    // relative, of two columns that say the same
-constexpr double kRounding = 5e-7;       // absolute, of numbers of order one that may vanish
-constexpr double kOffPath = 1e-3;        // strain by which a run may miss its path
-constexpr double kLeastPressure = 1e-4;  // P* below which ratios to it say little, and viscous forces may pull
-constexpr double kSurelyJammed = 1e-3;   // P* from which so many contacts carry that a mean field holds
-constexpr double kIsostatic = 3e-3;      // P* from which a packing at rest has six contacts and a margin of 0.3
-constexpr double kSlow = 0.01;           // inertial number beyond which dynamics rule
-constexpr double kImplausible = 3;       // factor by which a mean field may be off before units are suspected
+constexpr double kConsistency = 5e-4;  // relative, of two columns that say the same
+constexpr double kRounding = 5e-7;     // absolute, of numbers of order one that may vanish
+constexpr double kOffPath = 1e-3;      // strain by which a run may miss its path
+constexpr double kIsostatic = 3e-3;    // P* from which a packing at rest has six contacts and a margin of 0.3
+constexpr double kSlow = 0.01;         // inertial number beyond which dynamics rule
+constexpr double kImplausible = 3;     // factor by which a mean field may be off before units are suspected
 constexpr double kMeanFieldPressure = 0.87 / (2 * std::numbers::pi);  // P* over nu C <delta>/<r> at w = 3
 constexpr double kLeastFabric = 0.9, kMostFabric = 2;  // F_v over nu C, nu (C + 3 phi_r): g3 = 1 ... 1.63
-constexpr double kTurned = 0.1;                        // shear after which stress and fabric have come to its direction
-constexpr double kAligned = 0.93;                      // cosine of a mean over shear to its direction
 constexpr double kSpheres = 10000;                     // where their number is not told
+constexpr double kTellingVolume = 0.01;                // change of volume over which the stiffness is judged
+constexpr double kSoftest = 0.01, kStiffest = 10;      // |dP*/d eps_vol|; by Eq. (14) 0.2 ... 0.7
 
 bool near(double a, double b) { return std::abs(a - b) <= 0.02 * std::abs(b); }
 
@@ -42,18 +40,19 @@ std::string cause_of(double ratio, const char* turned) {
 
 class SeriesCheck {
  public:
-  SeriesCheck(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
-              const std::string& where)
+  SeriesCheck(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing, const RowPlace& place)
       : rows_(rows),
         path_(path),
         packing_(packing),
-        where_(where),
+        place_(place),
         segments_(resolve(path)),
         N_(shear_direction(segments_)) {
     double sum = 0;
     for (const Observation& o : rows) {
       sum += o.stress.tensor.trace();
       if (o.P_star > kSurelyJammed && o.inertial_number > kSlow) slow_ = false;
+      if (!o.fabric.tensor.array().isNaN().all()) with_fabric_ = true;
+      if (!std::isnan(o.C_star)) with_contacts_ = true;
     }
     pulls_ = sum < 0;
   }
@@ -81,14 +80,17 @@ class SeriesCheck {
       check_place(i);
     }
     check_isostatic();
-    for (std::size_t i = 0; i < rows_.size(); ++i) check_fabric_trace(i);
+    if (with_fabric_) {
+      for (std::size_t i = 0; i < rows_.size(); ++i) check_fabric_trace(i);
+    }
+    if (!with_contacts_) check_stiffness();
     check_work();
     check_direction();
   }
 
  private:
   [[noreturn]] void refuse(std::size_t row, const std::string& column, const std::string& why) const {
-    throw InvalidInput(fmt::format("{}: row {}, column '{}': {}", where_, row + 1, column, why));
+    throw InvalidInput(fmt::format("{}: {}", place_(row, column), why));
   }
 
   void check_finite(std::size_t i) const {
@@ -100,7 +102,7 @@ class SeriesCheck {
       const auto [a, b] = kComponentIndex[c];
       finite(o.strain.tensor(a, b), std::string("strain_") + kComponentName[c]);
       finite(o.stress.tensor(a, b), std::string("stress_") + kComponentName[c]);
-      finite(o.fabric.tensor(a, b), std::string("fabric_") + kComponentName[c]);
+      if (with_fabric_) finite(o.fabric.tensor(a, b), std::string("fabric_") + kComponentName[c]);
     }
     finite(o.nu, "nu");
     finite(o.P_star, "P_star");
@@ -215,7 +217,7 @@ class SeriesCheck {
     if (!std::isnan(o.mean_overlap)) {
       plausible(i, o.P_star, kMeanFieldPressure * nu_C * o.mean_overlap,
                 "volume fraction, coordination and mean overlap");
-    } else if (o.C_star > 7) {
+    } else if (o.C_star > 7 && packing_.friction == 0) {
       // Eqs. (11), (14): x = ((C* - 6)/8)^(1/0.58) beyond jamming, P* = 0.0417 nu C x/0.665
       plausible(i, o.P_star, 0.0627 * nu_C * std::pow((o.C_star - 6) / 8, 1 / 0.58),
                 "volume fraction and coordination");
@@ -225,7 +227,7 @@ class SeriesCheck {
   /// A packing at rest is isostatic. One row may stand out from its neighbours, three tell of a definition.
   void check_isostatic() const {
     std::size_t below = 0;
-    for (std::size_t i = 0; slow_ && i < rows_.size(); ++i) {
+    for (std::size_t i = 0; slow_ && packing_.friction == 0 && i < rows_.size(); ++i) {
       const Observation& o = rows_[i];
       below = o.P_star > kIsostatic && o.C_star < 6 ? below + 1 : 0;
       if (below < 3) continue;
@@ -235,6 +237,36 @@ class SeriesCheck {
                       "= M4/N with rattlers, are contacts counted once a pair, or are the units of the stress right?",
                       o.C_star, o.P_star));
     }
+  }
+
+  /// What the springs of contacts demand of the pressure where nobody counted them: from the row of the least pressure since the
+  /// volume last changed direction, in steps of a hundredth of volume.
+  void check_stiffness() const {
+    std::size_t from = 0, steepest = 0;
+    double most = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (rows_[i].P_star > 1)
+        refuse(i, "P_star",
+               fmt::format(
+                   "is {:.4g}: overlaps would be as large as the particles; are the units of the stress right? (stress "
+                   "in Pa, mean_radius in m, stiffness in kg/s^2)",
+                   rows_[i].P_star));
+      const double volume = std::abs(rows_[i].strain.tensor.trace() - rows_[from].strain.tensor.trace());
+      if (volume < kTellingVolume) continue;
+      const double slope = std::abs(rows_[i].P_star - rows_[from].P_star) / volume;
+      from = i;
+      if (slope < most) continue;
+      most = slope;
+      steepest = i;
+    }
+    if (from == 0 || (most > kSoftest && most < kStiffest)) return;
+    if (most == 0) return;  // unjammed
+    refuse(
+        steepest, "P_star",
+        fmt::format(
+            "is {:.4g} and changes by {:.2g} per volumetric strain, where packings change by 0.2 to 0.7; are the units "
+            "of the stress right? (stress in Pa, mean_radius in m, stiffness in kg/s^2)",
+            rows_[steepest].P_star, most));
   }
 
   /// What contacts that carry demand of the fabric.
@@ -296,11 +328,6 @@ class SeriesCheck {
     return of_one / std::sqrt(packing_.particles > 0 ? static_cast<double>(packing_.particles) : kSpheres);
   }
 
-  Deviator<double> stress_ratio(const Observation& o) const {
-    if (!(o.P_star > kLeastPressure)) return Deviator<double>::Zero();
-    return deviator<double>(o.stress.tensor) * (3 / o.stress.tensor.trace());
-  }
-
   /// int (sigma'/P) : d eps' from the start, by the trapezoidal rule: what a packing gives back is what it holds of its
   /// shear, s^2/3 over 2G/P at most, which the distance of a reversal, 0.1, bounds by s/30.
   void check_work() const {
@@ -322,75 +349,46 @@ class SeriesCheck {
     }
   }
 
-  /// Whether the tensor would point along the first shear with its sign turned or its axes named otherwise: an honest
-  /// packing that is off, a crystal or one of few spheres, would not.
-  bool points_along_with_other_columns(const Deviator<double>& mean) const {
-    const Eigen::Matrix3d a = tensor_of<double>(mean);
-    double best = -mean.dot(N_);
-    std::array<int, 3> axis{0, 1, 2};
-    do {
-      Eigen::Matrix3d named;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j)
-          named(i, j) = a(axis[static_cast<std::size_t>(i)], axis[static_cast<std::size_t>(j)]);
-      }
-      best = std::max(best, deviator<double>(named).dot(N_));
-    } while (std::next_permutation(axis.begin(), axis.end()));
-    return best > kAligned * mean.norm();
-  }
-
-  /// The mean of stress ratio and fabric over the first shear, its beginning left out.
   void check_direction() const {
-    const auto first = std::find_if(segments_.begin(), segments_.end(), [](const StraightSegment& s) {
-      return deviatoric_norm(s.direction.tensor) > 1e-12 * s.direction.tensor.norm();
-    });
-    if (first == segments_.end() || !first->spin.isZero(0)) return;
-    const int index = static_cast<int>(first - segments_.begin());
-    Deviator<double> s = Deviator<double>::Zero(), F = s;
-    int rows = 0;
-    std::size_t last = 0;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const Observation& o = rows_[i];
-      const Eigen::Matrix3d since = o.strain.tensor - rows_[0].strain.tensor - first->strain_start.tensor;
-      if (o.segment != index || deviatoric_norm(since) < kTurned || !(o.P_star > kSurelyJammed)) continue;
-      s += stress_ratio(o);
-      F += deviator<double>(o.fabric.tensor);
-      last = i;
-      ++rows;
-    }
-    if (rows == 0) return;
-    for (const auto& [sum, name] : {std::pair{s, "stress"}, {F, "fabric"}}) {
-      const Deviator<double> mean = sum / rows;
-      const double along = mean.dot(N_), across = (mean - along * N_).norm();
-      if (across <= 0.7 * along + scatter(4) || !points_along_with_other_columns(mean)) continue;
-      refuse(
-          last, name,
-          fmt::format("its deviator{} is {:.3g} along the shear and {:.3g} across it, in the mean from {} of the shear "
-                      "on; it must point along: two of its columns are swapped, or a sign is turned",
-                      name[0] == 's' ? ", over the pressure," : "", along, across, kTurned));
-    }
+    const auto wrong = misdirection(rows_, segments_, scatter(4));
+    if (wrong) refuse(wrong->row, wrong->column, wrong->why);
   }
 
   const std::vector<Observation>& rows_;
   const Path& path_;
   const PackingInfo& packing_;
-  const std::string& where_;
+  const RowPlace& place_;
   std::vector<StraightSegment> segments_;
   Deviator<double> N_;  // of the first shear
   bool slow_ = true;    // no row is jammed and ruled by dynamics
   bool pulls_ = false;  // on the whole
+  bool with_fabric_ = false, with_contacts_ = false;
 };
+
+RowPlace place_in(const std::string& where) {
+  return [where](std::size_t row, const std::string& column) {
+    return fmt::format("{}: row {}, column '{}'", where, row + 1, column);
+  };
+}
 
 }  // namespace
 
 void check_contradictions(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
+                          const RowPlace& place) {
+  SeriesCheck(rows, path, packing, place).contradictions();
+}
+void check_contradictions(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
                           const std::string& where) {
-  SeriesCheck(rows, path, packing, where).contradictions();
+  check_contradictions(rows, path, packing, place_in(where));
 }
 
 void check_series(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
+                  const RowPlace& place) {
+  SeriesCheck(rows, path, packing, place).physics();
+}
+void check_series(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
                   const std::string& where) {
-  SeriesCheck(rows, path, packing, where).physics();
+  check_series(rows, path, packing, place_in(where));
 }
 
 }  // namespace grainlaw

@@ -12,7 +12,10 @@
 //   the strain is on the segment of the path that the row says, and nu is the path's at its start
 //   int (sigma'/P) : d eps' >= what a packing may give back, from the start to any row (compression positive)
 //   after 0.1 of the first shear, stress and fabric point along it
+//   without C*: P* < 1, and where the volume changes |dP*/d eps_vol| = 0.01 ... 10, which the stiffness of contacts demands
+// Friction takes contacts (C* >= 4) and the relation of pressure to them. Fabric may be absent, but then from all rows.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,15 +23,22 @@
 
 namespace grainlaw {
 
+/// Names a row, from 0, and a column in messages.
+using RowPlace = std::function<std::string(std::size_t row, const std::string& column)>;
+
 /// Refuses a series whose columns contradict each other or their definitions. Undefined values are not judged. Throws
 /// InvalidInput "`where`: row 3, column 'nu': " (counted from 1, as below the header of a file) with the value, what
 /// contradicts it and the likely cause.
 void check_contradictions(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
                           const std::string& where);
+void check_contradictions(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
+                          const RowPlace& place);
 
-/// Refuses likewise also what no packing of soft spheres does on that path, and strain, nu, stress, P_star and fabric that
-/// are not finite.
+/// Refuses likewise also what no packing of soft spheres does on that path, strain, nu, stress and P_star that are not finite,
+/// and fabric that is not while it is in other rows.
 void check_series(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
                   const std::string& where);
+void check_series(const std::vector<Observation>& rows, const Path& path, const PackingInfo& packing,
+                  const RowPlace& place);
 
 }  // namespace grainlaw

@@ -26,13 +26,18 @@ struct PackingInfo {
   double size_width = 0;       ///< w = r_max/r_min of the uniform distribution [-]
   double mean_radius = 0;      ///< <r> of this packing [m]
   double stiffness = 0;        ///< k [kg/s^2]
+  double friction = 0;         ///< coefficient of friction of its contacts; in dataset.json where there is any [-]
 
   double stress_unit() const { return stiffness / (2 * mean_radius); }  ///< k/(2<r>) = stress of P* = 1 [Pa]
 };
 constexpr auto fields_of(std::type_identity<PackingInfo>) {
   using P = PackingInfo;
-  return std::tuple{Field{&P::seed, "seed"}, Field{&P::particles, "particles"}, Field{&P::size_width, "size_width"},
-                    Field{&P::mean_radius, "mean_radius", "m"}, Field{&P::stiffness, "stiffness", "kg/s^2"}};
+  return std::tuple{Field{&P::seed, "seed"},
+                    Field{&P::particles, "particles"},
+                    Field{&P::size_width, "size_width"},
+                    Field{&P::mean_radius, "mean_radius", "m"},
+                    Field{&P::stiffness, "stiffness", "kg/s^2"},
+                    Field{&P::friction, "friction", "", "", "", Rule::free}};  // so that digests without it stay
 }
 static_assert(tells_every_member<PackingInfo>());
 

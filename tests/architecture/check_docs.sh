@@ -6,7 +6,7 @@
 set -euo pipefail
 
 root=${1:?usage: check_docs.sh ROOT}
-rooms='model|dem|fit|predict|chain|app|tests|examples|docs|cmake'
+rooms='model|dem|fit|predict|chain|app|python|tests|examples|docs|cmake'
 
 violations=0
 report() {

@@ -24,7 +24,7 @@ while IFS= read -r -d '' file; do
   if [[ $path =~ $empty_names ]]; then
     report "$path" "name it after what it does, not '${BASH_REMATCH[2]}'"
   fi
-done < <(for room in model dem fit predict chain app tests examples; do
+done < <(for room in model dem fit predict chain app python tests examples; do
   if [[ -d $root/$room ]]; then
     find "$root/$room" -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.sh' \
       -o -name '*.cmake' -o -name 'CMakeLists.txt' -o -name '*.py' -o -name '*.js' -o -name '*.css' \

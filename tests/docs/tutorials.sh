@@ -69,6 +69,7 @@ if [[ -n ${PAGES:-} ]]; then
 fi
 run "$source/docs/tutorial.md"
 run "$source/docs/own-material.md"
+run "$source/docs/own-data.md"
 mkdir grainlaw-quickstart
 cp law/parameters.json grainlaw-quickstart/ # what README takes from the quickstart
 run "$source/README.md"

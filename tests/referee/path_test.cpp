@@ -24,6 +24,7 @@
 
 #include "dem/engine/averages.hpp"
 #include "dem/element_tests/element_run.hpp"
+#include "dem/element_tests/stepper.hpp"
 #include "tests/referee/lammps.hpp"
 #include "tests/support/dem_compression.hpp"
 #include "tests/support/figure.hpp"
@@ -62,7 +63,8 @@ Series run_engine(const dem::State& state, const Course& course, int steps) {
   const dem::Drive drive = dem::make_drive(segment, options.drive, state.packing.H);
   const Deviator<double> N = shear_direction({segment});
   Series series;
-  const auto test = dem::run_element_test(state, {segment}, options, {}, [&](dem::Simulation& sim, int, double) {
+  const auto test = dem::run_element_test(state, {segment}, options, {}, [&](dem::Stepper& stepper, int, double) {
+    dem::Simulation& sim = stepper.simulation();
     if (sim.step() % static_cast<std::uint64_t>(steps / kRows) != 0) return;
     const Observation row = dem::observe(sim, dem::motion_at(drive, sim.time()), N);
     series.push_back({row.P_star, row.s_par, row.C_star});

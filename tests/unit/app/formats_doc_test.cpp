@@ -134,6 +134,23 @@ TEST(FormatsDocument, ListsTheKeysOfATest) {
   expect_section("test keys", key_table(Schema::test, shared));
 }
 
+TEST(FormatsDocument, ListsTheKeysOfAMapping) {
+  std::string table = "| key | value | meaning |\n|---|---|---|\n";
+  const auto add = [&](const std::string& prefix, const Json& properties) {
+    for (const auto& item : properties.items()) {
+      if (item.key() == "$schema" || item.key() == "comment" || (!prefix.empty() && item.key() == "series")) continue;
+      table += fmt::format("| `{}{}` | {} | {} |\n", prefix, item.key(), range(item.value()),
+                           cell(item.value()["description"].get<std::string>()));
+    }
+  };
+  const Json& properties = schema(Schema::mapping)["properties"];
+  add("", properties);
+  add("packings.NAME.", properties["packings"]["additionalProperties"]["properties"]);
+  add("tests[].", properties["tests"]["items"]["properties"]);
+  add("series.", properties["series"]["properties"]);
+  expect_section("mapping keys", table);
+}
+
 /// A struct's fields as keys of a schema: what is missing or differs, as it should read.
 template <class T>
 void expect_keys(const Json& properties) {
@@ -207,9 +224,9 @@ TEST(FormatsDocument, StatesTheExitCodes) {
 
 TEST(FormatsDocument, NamesEveryFileOfASchema) {
   const std::string text = read_all(kDocument);
-  for (const char* file :
-       {"spec.schema.json", "path.schema.json", "test.schema.json", "dataset.schema.json", "parameters.schema.json",
-        "study.schema.json", "study_settings.schema.json", "plan.schema.json", "prior.schema.json"}) {
+  for (const char* file : {"spec.schema.json", "path.schema.json", "test.schema.json", "dataset.schema.json",
+                           "parameters.schema.json", "study.schema.json", "study_settings.schema.json",
+                           "plan.schema.json", "prior.schema.json", "import.schema.json"}) {
     EXPECT_NE(text.find(file), std::string::npos) << file;
     EXPECT_TRUE(std::filesystem::exists(kDocument.parent_path() / "schemas" / file));
   }

@@ -203,7 +203,7 @@ TEST_F(ReportFolder, WithoutPredictionsThePageSaysWhatIsMissing) {
   EXPECT_NE(html.find("Not judged"), std::string::npos);
   EXPECT_NE(html.find("grainlaw predict " + (dir_ / "parameters.json").string()), std::string::npos);
   ParametersFile parameters = read_parameters(dir_ / "parameters.json");
-  parameters.law.estimates[parameter_index("fabric_rate.Q_c")] = {std::nan(""), std::nan(""), Status::not_identified,
+  parameters.law.estimates[parameter_index("stress_rate.Q_c")] = {std::nan(""), std::nan(""), Status::not_identified,
                                                                   "one density"};
   write_parameters(dir_ / "parameters.json", parameters);
   EXPECT_NE(page().find("No prediction can be made"), std::string::npos);

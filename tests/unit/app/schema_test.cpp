@@ -106,7 +106,8 @@ TEST(SchemaCheck, LetsEveryInputNameItsSchemaAndTakesItsExamples) {
                                     {Schema::dataset, "dataset"},
                                     {Schema::parameters, "parameters"},
                                     {Schema::prior, "prior"},
-                                    {Schema::plan, "plan"}}) {
+                                    {Schema::plan, "plan"},
+                                    {Schema::mapping, "import"}}) {
     const Json& s = schema(which);
     EXPECT_TRUE(s["properties"].contains("$schema") && s["properties"]["$schema"]["type"] == "string") << name;
     EXPECT_TRUE(s.contains("title") && s.contains("description") && s.value("allowComments", false)) << name;
@@ -116,7 +117,7 @@ TEST(SchemaCheck, LetsEveryInputNameItsSchemaAndTakesItsExamples) {
       EXPECT_EQ(schema_violations(example, which, name), std::vector<std::string>{}) << example.dump();
     }
   }
-  for (const Schema which : {Schema::spec, Schema::path, Schema::test, Schema::dataset})
+  for (const Schema which : {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::mapping})
     EXPECT_GT(schema(which).value("examples", Json::array()).size(), 0u);
 }
 
@@ -134,7 +135,7 @@ void expect_described(const Json& node, const std::string& place) {
 
 TEST(SchemaCheck, DescribesEveryKey) {
   for (const Schema which :
-       {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::parameters, Schema::prior})
+       {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::parameters, Schema::prior, Schema::mapping})
     expect_described(schema(which), "");
 }
 

@@ -1,5 +1,6 @@
 #include "model/files/series_csv.hpp"
 #include "model/files/column.hpp"
+#include "model/vocabulary/series_check.hpp"
 #include "predict/prediction_files.hpp"
 
 #include <cmath>
@@ -91,7 +92,7 @@ TEST_F(SeriesCsv, HeaderNamesUnits) {
 TEST_F(SeriesCsv, ComputesWhatFollowsFromRequiredColumns) {
   std::set<std::string> optional;
   for (const auto& column : columns_of<Observation>()) {
-    if (!column.required()) optional.insert(column.name);
+    if (!column.required() && !column.name.starts_with("fabric_")) optional.insert(column.name);
   }
   const auto rows = read(text_without(optional));
   ASSERT_EQ(rows.size(), record_.rows.size());
@@ -127,6 +128,21 @@ TEST_F(SeriesCsv, RefusesContradictions) {
             std::string::npos);
 }
 
+TEST_F(SeriesCsv, GoesWithoutFabricAndContacts) {
+  std::set<std::string> optional;
+  for (const auto& column : columns_of<Observation>()) {
+    if (!column.required()) optional.insert(column.name);
+  }
+  const auto rows = read(text_without(optional));
+  ASSERT_EQ(rows.size(), record_.rows.size());
+  for (const Observation& row : rows) {
+    EXPECT_TRUE(row.fabric.tensor.array().isNaN().all() && std::isnan(row.F_v) && std::isnan(row.F_par) &&
+                std::isnan(row.C_star));
+    EXPECT_TRUE(std::isfinite(row.P_star));
+  }
+  EXPECT_EQ(refusal([&] { check_series(rows, record_.path, record_.packing, "t"); }), "accepted");
+}
+
 TEST_F(SeriesCsv, RefusesUnknownAndMissingColumns) {
   std::string text = text_without({});
   EXPECT_EQ(refusal_of(text), "accepted");
@@ -136,7 +152,8 @@ TEST_F(SeriesCsv, RefusesUnknownAndMissingColumns) {
   kilo.replace(kilo.find(pascal), pascal.size(), "stress_xx[kPa]");
   EXPECT_NE(refusal_of(kilo).find("column 'stress_xx[kPa]' must be in its unit: 'stress_xx[Pa]'"), std::string::npos);
   EXPECT_NE(refusal_of(text_without({"nu"})).find("misses the column 'nu'"), std::string::npos);
-  EXPECT_NE(refusal_of(text_without({"fabric_xy"})).find("misses the column 'fabric_xy'"), std::string::npos);
+  EXPECT_NE(refusal_of(text_without({"fabric_xy"})).find("has 5 of the six columns of fabric; give all or none"),
+            std::string::npos);
   EXPECT_NE(refusal_of(text.substr(0, text.find('\n') + 1)).find("the series has no rows"), std::string::npos);
 }
 
@@ -168,6 +185,15 @@ TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
               predict::read_prediction_series(put("q.csv", "segment\n0\n"));
             }).find("misses the column 'strain_xx'"),
             std::string::npos);
+  for (const char* segment : {"2147483648", "1e300", "0.5"}) {
+    std::string text = content(folder_ / "p.csv");
+    ASSERT_TRUE(text.starts_with("segment,"));
+    const std::size_t at = text.find('\n') + 1;
+    text.replace(at, text.find(',', at) - at, segment);
+    EXPECT_NE(refusal([&] { predict::read_prediction_series(put("q.csv", text)); }).find("row 1, column 'segment'"),
+              std::string::npos)
+        << segment;
+  }
 }
 
 }  // namespace

@@ -12,7 +12,10 @@ namespace fs = std::filesystem;
 
 TEST(OneLine, EscapesControlCharactersAndBoundsLength) {
   EXPECT_EQ(one_line("a\nb\x1b[31m\x7f"), "a\\x0ab\\x1b[31m\\x7f");
-  EXPECT_EQ(one_line("é"), "é");
+  EXPECT_EQ(one_line("é ν σ* 😀"), "é ν σ* 😀");
+  // a terminal's other escape (CSI in one character), text turned around, a line that ends for a browser, no UTF-8 at all
+  EXPECT_EQ(one_line("\u009b31m \u202etxt\u202c \u2028 \u2066"), "\\u009b31m \\u202etxt\\u202c \\u2028 \\u2066");
+  EXPECT_EQ(one_line("\x9b\xff\xc3"), "\\x9b\\xff\\xc3");
   EXPECT_EQ(one_line(std::string(100, 'x'), 5), "xxxxx...");
 }
 

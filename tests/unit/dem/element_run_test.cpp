@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "dem/element_tests/energy_watch.hpp"
+#include "dem/element_tests/stepper.hpp"
 #include "dem/files/state_file.hpp"
 #include "dem/statics/relax.hpp"
 #include "model/vocabulary/error.hpp"
@@ -125,7 +126,8 @@ TEST(ElementTest, ATimeStepIsAtMostTheEnginesAndSegmentsEndExactly) {
   std::uint64_t seen = 0;
   double last_e = 0;
   const ElementTestOptions options = fast_options();
-  const ElementTest test = run_element_test(start, path, options, {}, [&](Simulation& sim, int index, double e) {
+  const ElementTest test = run_element_test(start, path, options, {}, [&](Stepper& stepper, int index, double e) {
+    Simulation& sim = stepper.simulation();
     ++seen;
     EXPECT_EQ(sim.step(), seen);
     EXPECT_EQ(index, 0);
@@ -254,7 +256,7 @@ TEST(ElementTest, StopsOnRequestAndReportsProgress) {
   control.report = [&](const Progress& progress) { reports.push_back(progress); };
   std::uint64_t steps = 0;
   EXPECT_THROW(run_element_test(start, path, fast_options(), control,
-                                [&](const Simulation&, int, double) {
+                                [&](Stepper&, int, double) {
                                   if (++steps == 100) stop.request_stop();
                                 }),
                Interrupted);
@@ -272,7 +274,8 @@ TEST(ElementTest, ARunContinuesFromAFileBitForBit) {
   const ElementTestOptions options = fast_options();
   const auto file = std::filesystem::temp_directory_path() / ("grainlaw-continue-" + std::to_string(::getpid()));
   const std::uint64_t interrupted_at = 700;
-  const ElementTest whole = run_element_test(start, path, options, {}, [&](Simulation& sim, int, double) {
+  const ElementTest whole = run_element_test(start, path, options, {}, [&](Stepper& stepper, int, double) {
+    Simulation& sim = stepper.simulation();
     if (sim.step() != interrupted_at) return;
     write_state(file, sim.state());
   });

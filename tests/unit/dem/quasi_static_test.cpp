@@ -45,7 +45,8 @@ double max_net_force(const State& state) {
 TEST(QuasiStatic, EveryStepEndsInEquilibriumOnThePath) {
   const Scene scene(0.06, 4e-3, 5);
   std::uint64_t seen = 0;
-  const ElementTest test = scene.run([&](Simulation& sim, int index, double e) {
+  const ElementTest test = scene.run([&](Stepper& stepper, int index, double e) {
+    Simulation& sim = stepper.simulation();
     ++seen;
     EXPECT_EQ(index, 0);
     EXPECT_NEAR(e, scene.path[0].length * static_cast<double>(seen) / 15, 1e-15);
@@ -142,7 +143,7 @@ TEST(QuasiStatic, StopsOnRequestAtAStep) {
   std::vector<Checkpoint> saved;
   std::uint64_t steps = 0;
   EXPECT_THROW(run_element_test(scene.start, scene.path, scene.options, control,
-                                [&](const Simulation&, int, double) {
+                                [&](Stepper&, int, double) {
                                   if (++steps == 7) stop.request_stop();
                                 },
                                 {[&](const Checkpoint& c) { saved.push_back(c); }, 3600}),

@@ -110,6 +110,13 @@ TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
   ensure_preparation(store, tiny(), {}, {});
   EXPECT_EQ(content(state), bytes);  // the same bits again
 
+  for (const char* change : {R"({"cost": 1})", R"({"cost": {"steps": -1}})", R"({"packing": {"mean_radius": null}})",
+                             R"({"packing": {"particles": 1e300}})", R"({"warnings": [1]})", R"({"files": 3})"}) {
+    Json record_changed = record;  // its files are sound, what it says is not
+    record_changed.merge_patch(Json::parse(change));
+    write_json(store.folder(key) / "run.json", OrderedJson(record_changed));
+    EXPECT_FALSE(store.find(key)) << change;
+  }
   fs::remove(store.folder(key) / "run.json");  // as if killed before the end
   put("runs/" + key + "/leftover", "x");
   EXPECT_FALSE(store.find(key));

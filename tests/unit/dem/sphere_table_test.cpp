@@ -121,6 +121,7 @@ TEST_F(SphereTable, RefusesABrokenRow) {
   EXPECT_REFUSED(header + "2,0,0,0,0\n", "line 3, column r", "not positive");
   EXPECT_REFUSED(header + "2,0,0,0,-0.001\n", "line 3, column r", "not positive");
   EXPECT_REFUSED(header + std::string("2,0,0,0,0.0\0001\n", 14), "line 3", "NUL");
+  EXPECT_REFUSED(header + "2,0,0,0,1e-150\n", "sphere 2", "mass");  // its cube is zero
   EXPECT_REFUSED(header + "\n2,0,0,0,0.001\n", "line 4", "empty line");
   EXPECT_REFUSED(header + "2,1e6,0,0,0.001\n", "line 3", "metres");
   EXPECT_REFUSED(header + std::string(1'100'000, '1') + "\n", "line 3", "1 MB");

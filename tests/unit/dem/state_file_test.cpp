@@ -208,6 +208,11 @@ TEST_F(StateFile, ForgedContentIsRefused) {
   };
   EXPECT_NE(forged(replace("\"particles\":2", "\"particles\":9")).find("size"), std::string::npos);
   EXPECT_NE(forged(replace("\"particles\":2", "\"particles\":X")).find("header"), std::string::npos);
+  const auto negative = [](std::string& c) {
+    c.insert(c.find("\"seed\":") + 7, "-");
+    ++c[12];  // length of the header
+  };
+  EXPECT_NE(forged(negative).find("whole number"), std::string::npos) << refusal();
   EXPECT_NE(forged(replace("\"particles\"", "\"partycles\"")).find("header"), std::string::npos);
   EXPECT_NE(forged([](std::string& c) { c.replace(c.size() - 96, 8, "\0\0\0\0\0\0\xf8\x7f", 8); }).find("finite"),
             std::string::npos);

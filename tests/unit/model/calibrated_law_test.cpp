@@ -49,8 +49,10 @@ TEST(CalibratedLaw, EachRungLacksWhatItsEquationsRead) {
   const Rungs all{kRungs.begin(), kRungs.end()}, none{};
   // Eqs. (11), (12), (14) of ISO and Eq. (20): by all of them
   for (const char* name : {"coordination.C1", "rattlers.phi_v", "pressure.nu_c", "shear.nu_c",
-                           "stress_ratio_max.Q_limit", "stress_rate.Q_c", "fabric_max.alpha", "fabric_rate.Q_limit"})
+                           "stress_ratio_max.Q_limit", "stress_rate.Q_c"})
     EXPECT_EQ(rungs_without(name, Coupling::energy), none) << name;
+  for (const char* name : {"fabric_max.alpha", "fabric_rate.Q_limit"})  // P* and s of the reduced law need no fabric
+    EXPECT_EQ(rungs_without(name, Coupling::energy), Rungs{Rung::reduced}) << name;
   for (const char* name :
        {"steady_coordination.alpha", "steady_rattlers.phi_c", "steady_pressure.p0", "memory.G", "memory.m"})
     EXPECT_EQ(rungs_without(name, Coupling::energy), (Rungs{Rung::reduced, Rung::evolution})) << name;
@@ -78,11 +80,15 @@ TEST(CalibratedLaw, TheRichestRungIsTheLastThatLacksNothing) {
 TEST(CalibratedLaw, NoDecayIsNeededWithoutAnExponential) {
   CalibratedLaw law = complete();
   forget(law, "fabric_max.alpha");
-  EXPECT_EQ(missing_parameter(law, Rung::reduced), parameter_index("fabric_max.alpha"));
+  EXPECT_EQ(missing_parameter(law, Rung::evolution), parameter_index("fabric_max.alpha"));
   law.parameters.fabric_max.Q_c = 0;
-  EXPECT_FALSE(missing_parameter(law, Rung::reduced).has_value());
+  EXPECT_FALSE(missing_parameter(law, Rung::evolution).has_value());
+  forget_unknown_fabric(law);
+  EXPECT_TRUE(knows_fabric(law.parameters));
   forget(law, "fabric_max.Q_c");  // its value must not be read
-  EXPECT_EQ(missing_parameter(law, Rung::reduced), parameter_index("fabric_max.Q_c"));
+  EXPECT_EQ(missing_parameter(law, Rung::evolution), parameter_index("fabric_max.Q_c"));
+  forget_unknown_fabric(law);
+  EXPECT_FALSE(knows_fabric(law.parameters));
 }
 
 TEST(CalibratedLaw, ARefusalNamesTheParameterAndWhy) {

@@ -63,6 +63,8 @@ TEST(Start, FromAMeasuredRow) {
   bad = row;
   bad.fabric.tensor(0, 1) = kNaN;
   EXPECT_THROW(state_from_row(bad), InvalidInput);
+  bad.fabric.tensor.setConstant(kNaN);  // nobody measured it
+  EXPECT_EQ(state_from_row(bad).P, state.P);
   EXPECT_THROW(state_from_row(Observation{}), InvalidInput);
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "dem/element_tests/preparation.hpp"
+#include "dem/element_tests/stepper.hpp"
 #include "dem/files/state_file.hpp"
 #include "tests/support/dem_scene.hpp"
 #include "tests/support/figure.hpp"
@@ -111,7 +112,8 @@ TEST_F(Restart, R5TheListIsTheInterruptedRuns) {
       {0.75, Branch::unloading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", true), ExtentKind::target_nu, 0.70}}});
   int lists = 0, differing = 0;
   double largest_stretch = 0;
-  const StepObserver compare = [&](Simulation& sim, int, double) {
+  const StepObserver compare = [&](Stepper& stepper, int, double) {
+    Simulation& sim = stepper.simulation();
     CellMotion still;
     still.H = sim.state().packing.H;
     const NeighbourList list = scene::list_of(sim),
@@ -137,7 +139,8 @@ TEST_F(Restart, R10AStoppedRunHasSavedItsLastStep) {
   for (;;) {
     std::stop_source source;
     std::uint64_t seen = 0;
-    const StepObserver stop_at_the_seventh = [&](Simulation& sim, int, double) {
+    const StepObserver stop_at_the_seventh = [&](Stepper& stepper, int, double) {
+      Simulation& sim = stepper.simulation();
       steps = sim.step();
       if (++seen == 7) source.request_stop();
     };

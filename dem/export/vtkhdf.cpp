@@ -1,0 +1,115 @@
+#include "dem/export/vtkhdf.hpp"
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <string>
+#include <vector>
+
+#include "model/files/output.hpp"
+#include "model/vocabulary/error.hpp"
+
+namespace grainlaw::dem {
+namespace {
+
+/// A handle of the library; false where a call failed.
+class Handle {
+ public:
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
+    if (id_ < 0) throw Error("HDF5 failed; is there memory?");
+  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }  // NOLINT: as the library's own functions take it
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void need(herr_t status) {
+  if (status < 0) throw Error("HDF5 failed; is there memory?");
+}
+
+template <class Number>
+hid_t type_of() {
+  if constexpr (std::is_same_v<Number, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<Number, std::int64_t>) return H5T_NATIVE_INT64;
+  if constexpr (std::is_same_v<Number, std::uint8_t>) return H5T_NATIVE_UINT8;
+}
+
+template <class Number>
+void put(hid_t place, const char* name, const std::vector<Number>& values, hsize_t components = 1) {
+  const hsize_t shape[2] = {values.size() / components, components};
+  const Handle space(H5Screate_simple(components > 1 ? 2 : 1, shape, nullptr), H5Sclose);
+  const Handle set(H5Dcreate2(place, name, type_of<Number>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  need(H5Dwrite(set, type_of<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+}
+
+void put_type(hid_t group) {
+  const std::string name = "UnstructuredGrid";
+  const Handle text(H5Tcopy(H5T_C_S1), H5Tclose), one(H5Screate(H5S_SCALAR), H5Sclose);
+  need(H5Tset_size(text, name.size()));
+  need(H5Tset_strpad(text, H5T_STR_NULLPAD));
+  const Handle type(H5Acreate2(group, "Type", text, one, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  need(H5Awrite(type, text, name.data()));
+  const hsize_t two = 2;
+  const std::int64_t numbers[2] = {1, 0};
+  const Handle pair(H5Screate_simple(1, &two, nullptr), H5Sclose);
+  const Handle version(H5Acreate2(group, "Version", H5T_NATIVE_INT64, pair, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  need(H5Awrite(version, H5T_NATIVE_INT64, numbers));
+}
+
+void put_snapshot(hid_t file, const Snapshot& snapshot) {
+  const Packing& p = snapshot.packing;
+  const Handle root(H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  put_type(root);
+  const auto n = static_cast<std::int64_t>(p.size());
+  std::vector<double> points, velocities;
+  std::vector<std::int64_t> connectivity, offsets{0};
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const Eigen::Vector3d x = snapshot.position(i), v = snapshot.velocity(i);
+    points.insert(points.end(), x.begin(), x.end());
+    velocities.insert(velocities.end(), v.begin(), v.end());
+    connectivity.push_back(static_cast<std::int64_t>(i));
+    offsets.push_back(static_cast<std::int64_t>(i + 1));
+  }
+  for (const char* count : {"NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"})
+    put<std::int64_t>(root, count, {n});
+  put(root, "Points", points, 3);
+  put(root, "Connectivity", connectivity);
+  put(root, "Offsets", offsets);
+  put(root, "Types", std::vector<std::uint8_t>(p.size(), 1));  // VTK_VERTEX
+  const Handle data(H5Gcreate2(root, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  put(data, "id", p.id);
+  put(data, "radius", p.radius);
+  put(data, "velocity", velocities, 3);
+  const Handle fields(H5Gcreate2(root, "FieldData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  put<double>(fields, "time", {snapshot.time});
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> H = p.H;
+  put(fields, "cell", std::vector<double>(H.data(), H.data() + 9));
+}
+
+/// The file as bytes, made in memory.
+std::string vtkhdf_bytes(const Snapshot& snapshot) {
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  need(H5Pset_fapl_core(access, 1 << 20, false));
+  const Handle file(H5Fcreate("grainlaw.vtkhdf", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  put_snapshot(file, snapshot);
+  need(H5Fflush(file, H5F_SCOPE_GLOBAL));
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size < 0) throw Error("HDF5 failed; is there memory?");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) throw Error("HDF5 failed; is there memory?");
+  return bytes;
+}
+
+}  // namespace
+
+void write_vtkhdf(const std::filesystem::path& file, const Snapshot& snapshot) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are said once, by us
+  write_durably(file, vtkhdf_bytes(snapshot));
+}
+
+}  // namespace grainlaw::dem

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# scene.sh GRAINLAW FOLDER: what the readers need beside the file that is fuzzed, made by the program itself in a few seconds:
+# FOLDER/READER with the file and its companions, FOLDER/seeds/READER with more of its kind. Arrays are cut short: small
+# files are read faster, and hold as many kinds of mistakes.
+set -euo pipefail
+grainlaw=$(realpath "$1") source=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
+mkdir -p "$2" && cd "$2"
+slim() { jq -c "walk(if type == \"array\" and length > ${2:-3} then .[:${2:-3}] else . end)" "$1"; }
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cat >"$work/spec.json" <<'JSON'
+{"particles": 100, "seeds": [1, 2], "strain_rate": 3000, "rows": 20, "nu_end": 0.67, "densities": [0.70, 0.74, 0.78],
+ "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration", "density": 0.74},
+           {"name": "own", "branch": "loading", "density": [0.74], "role": "rehearsal", "probes": {"every": 0.1},
+            "segments": [{"rate_tensor": [[-1, 0, 0], [0, 0.5, 0], [0, 0, 0]], "extent": {"eps_dev": 0.1}}]}]}
+JSON
+cat >"$work/path.json" <<'JSON'
+{"initial": {"nu": 0.74, "branch": "unloading"}, "seeds": [7], "rows": 6, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.05}}]}
+JSON
+cat >"$work/modes.json" <<'JSON'
+{"initial": {"nu": 0.74}, "segments": [{"mode": "D3", "axes": "yzx", "reverse": true, "cycles": {"amplitude": 0.01, "count": 2, "one_sided": true}},
+ {"velocity_gradient": [[-1, 1, 0], [0, 0, 0], [0, 0, 0.5]], "extent": {"path": 0.1}},
+ {"mode": "UNI", "free": {"xx": {"quantity": "stress", "rate": 0}}, "extent": {"target_nu": 0.76}}]}
+JSON
+cat >"$work/test.json" <<'JSON'
+{"particles": 12, "seed": 1, "strain_rate": 3000, "rows": 4, "nu_end": 0.67, "initial": {"nu": 0.72}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.02}}]}
+JSON
+(
+  cd "$work" &&
+    "$grainlaw" simulate test.json -o sim &&
+    "$grainlaw" calibrate --dataset "$source/examples/starters/dataset" -o law &&
+    "$grainlaw" predict law/parameters.json path.json --model reduced --dem --spec spec.json -o prediction &&
+    "$grainlaw" study fit law --vary packings=2 -o study
+) >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
+
+mkdir -p {csv,path,strain,series,dataset,test,spheres,state,checkpoint,store/runs/key,progress,pictures} \
+  {parameters,prior,calibration,fitted_paths,prediction,comparison,curve,study} seeds/{json,schema,spec,path,test,spheres,parameters}
+runs=("$work"/sim/runs/*/series.csv)
+head -7 "$source/examples/starters/dataset/D2-0.68-s1.csv" | tee csv/table.csv >series/series.csv
+cp "$work/path.json" path/path.json
+cp "$work/modes.json" "$source"/examples/starters/path.json "$source"/examples/law/{d2-d3,cycles/cyclic-0.69-small}.json seeds/path
+echo '{"initial": {"nu": 0.72}, "strain_csv": "strain.csv"}' >strain/path.json
+cut -d, -f 1-8 "$work/sim/series.csv" >strain/strain.csv
+jq -c '.tests |= map(select(.name == "D2-0.68-s1" or .name == "D2-0.68-s2")) | .tests[].role = "validation" | del(.comment, .["$schema"])' \
+  "$source/examples/starters/dataset/dataset.json" >dataset/dataset.json
+for seed in 1 2; do head -4 "$source/examples/starters/dataset/D2-0.68-s$seed.csv" >"dataset/D2-0.68-s$seed.csv"; done
+
+cp "$work/spec.json" seeds/spec/small.json
+for name in starters law law/forms quickstart; do cp "$source/examples/$name/spec.json" "seeds/spec/${name//\//-}.json"; done
+cp "$work/test.json" test/test.json
+cell=$(jq -c .cell "$work/sim/simulation.json")
+for start in '"state": "end.state"' "\"spheres\": \"end.csv\", \"cell\": $cell" '"nu_max": 0.8, "keep": [{"nu": 0.75}]'; do
+  segments='"segments": [{"mode": "ISO", "extent": {"target_nu": 0.73}}], "relax": true,'
+  [[ $start == *keep* ]] && segments=''
+  echo "{$segments $start}" >"seeds/test/${start:1:5}.json"
+done
+cp "$work"/sim/end.{state,csv} test
+cp "$work/sim/end.csv" spheres/spheres.csv
+cut -d, -f 1-5 "$work/sim/end.csv" >seeds/spheres/resting.csv
+cp "$work/sim/end.state" state/end.state
+cp state/end.state state/state
+
+run=$(dirname "${runs[0]}")
+cp "$run"/* store/runs/key
+jq -c '.key = "key"' "$run/run.json" >store/runs/key/run.json
+echo '{"states": [], "warnings": ["w"], "files": {}}' >progress/progress.json
+slim "$source/examples/paper/data/dataset/pictures.json" 18 >pictures/pictures.json
+
+slim "$work/law/parameters.json" | jq -c 'del(.provenance, .parameters[].symbol, .parameters[].equation)' >parameters/parameters.json
+cp parameters/parameters.json fitted_paths
+slim "$source/fit/packing_prior.json" 2 | jq -c '. + {format: "grainlaw prior", format_version: 1}' >prior/prior.json
+slim "$work/law/calibration.json" 2 | jq -c 'del(.provenance)' >calibration/calibration.json
+slim "$work/law/fitted_paths.json" >fitted_paths/fitted_paths.json
+slim "$work/study/study.json" >study/study.json
+slim "$work/prediction/prediction.json" | jq -c 'del(.provenance.command) | .curves |= .[:1]' >prediction/prediction.json
+slim "$work/prediction/comparison.json" >comparison/comparison.json
+cp prediction/prediction.json comparison
+mkdir comparison/dem
+jq -c 'del(.digest, .spec, .provenance, .tests[].sha256)' "$work/prediction/dem/dataset.json" >comparison/dem/dataset.json
+for file in "$work"/prediction/dem/*.csv; do head -4 "$file" >"comparison/dem/$(basename "$file")"; done
+for folder in prediction comparison; do
+  head -4 "$work/prediction/reduced-law.csv" | tee $folder/reduced-law.csv >curve/curve.csv
+done
+jq -c '.dem = null' prediction/prediction.json >"$work/alone.json" && mv "$work/alone.json" prediction/prediction.json
+
+for name in path spec test parameters prior dataset; do
+  for file in "$name/$name.json" seeds/$name/*.json; do
+    if [[ -e $file ]]; then cp "$file" "seeds/schema/$name-$(basename "$file")"; fi
+  done
+done
+cat >seeds/json/all.json <<'JSON'
+{"a": [0, -1, 1.5e-3, 1e308, 18446744073709551615, true, false, null, "\u00e9\ud83d\ude00\\\"\n", {}, []], "b": {"c": [[[]]]}} // end
+JSON
+echo '{"p": {"value": -0.0, "note": "x"}, "m": [[1e-300, -0.0], [0, 2.5e3]]}' >seeds/json/matrix.json
+cp path/path.json seeds/json
+cp -r seeds/json seeds/json-own
+rm seeds/json-own/all.json
