@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kAtCorner = 1e-9;  // strain; a row that ends its segment was moved onto the corner
+
 void check_times(const ForeignRows& foreign) {
   for (std::size_t i = 1; i < foreign.rows.size(); ++i) {
     const double before = foreign.rows[i - 1].time, here = foreign.rows[i].time;
@@ -41,6 +43,22 @@ Path path_of(const Mapping& mapping, const TestMapping& test, const ForeignRows&
     throw InvalidInput(fmt::format("{}: test {}: path: {}", mapping.name, test.name, error.what()));
   }
   return path;
+}
+
+/// Each segment starts from the row that ends the one before it, so there must be one at each corner.
+void check_corners(const ForeignRows& foreign, const TestRecord& record) {
+  const std::vector<StraightSegment> segments = resolve(record.path);
+  for (std::size_t i = 1; i < record.rows.size(); ++i) {
+    const Observation &last = record.rows[i - 1], &next = record.rows[i];
+    if (next.segment == last.segment) continue;
+    const Eigen::Matrix3d corner = segments[static_cast<std::size_t>(next.segment)].strain_start.tensor;
+    const double before = (last.strain.tensor - corner).norm();
+    if (before > kAtCorner)
+      throw InvalidInput(fmt::format(
+          "{}: is the last row of segment {} of the path, {:.3g} of strain before its end; keep the row at each corner, "
+          "correct the path, or leave it out to have it found",
+          foreign.place(i - 1, "strain"), last.segment, before));
+  }
 }
 
 /// Titles of extra columns fit for the header of a CSV, all different.
@@ -109,6 +127,7 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
         "{}: the strain is {:.3g} off {}, more than path_tolerance, {:g}; correct the path, or leave it "
         "out to have it found, or allow more",
         foreign.place(moved.row, "strain"), moved.farthest, path_text(record.path), test.mapping.path_tolerance));
+  check_corners(foreign, record);
   complete(record.rows, record.path, record.packing);
   check_series(record.rows, record.path, record.packing, foreign.place);
   result.says = {

@@ -143,6 +143,12 @@ void end_at_corners(const std::vector<StraightSegment>& segments, const std::vec
   }
 }
 
+/// The last row of a segment that ends it, to `tolerance`, ends it exactly: the next one starts from there.
+void end_at(const StraightSegment& segment, const Tensor& strain, double tolerance, Place& place) {
+  const double off = (strain - segment.strain(segment.length).tensor).norm();
+  if (off <= tolerance) place = {segment.length, off};
+}
+
 /// Segment of each row, ascending without gaps, such that the squares of the distances are least; going back on a segment counts as
 /// distance. Of equals the earlier segment: a corner ends the segment before it.
 std::vector<int> segments_of_rows(const std::vector<StraightSegment>& segments, const std::vector<Observation>& rows) {
@@ -214,7 +220,8 @@ Moved move_onto(const Path& path, double tolerance, std::vector<Observation>& ro
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (i > 0 && of_row[i] != of_row[i - 1]) e = 0;
     const StraightSegment& segment = segments[static_cast<std::size_t>(of_row[i])];
-    const Place place = nearest(segment, rows[i].strain.tensor, e);
+    Place place = nearest(segment, rows[i].strain.tensor, e);
+    if (i + 1 == rows.size() || of_row[i + 1] != of_row[i]) end_at(segment, rows[i].strain.tensor, tolerance, place);
     e = place.e;
     if (place.off > moved.farthest) moved = {place.off, i};
     rows[i].segment = of_row[i];

@@ -101,6 +101,17 @@ TEST(StraightPath, CornersEndTheirSegment) {
   for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_EQ(rows[i].segment, static_cast<int>((i - 1) / 40)) << i;
 }
 
+// What a text of six digits leaves of a corner: the row lies a little before it.
+TEST(StraightPath, RowsJustBeforeACornerEndTheirSegment) {
+  auto rows = rows_along(kTurning, 40);
+  const std::vector<StraightSegment> segments = resolve(kTurning);
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    rows[40 * (k + 1)].strain = segments[k].strain(segments[k].length * (1 - 2e-5));
+  EXPECT_LT(move_onto(kTurning, 1e-4, rows).farthest, 1e-5);
+  for (std::size_t k = 0; k < segments.size(); ++k)
+    EXPECT_EQ(rows[40 * (k + 1)].strain.tensor, segments[k].strain(segments[k].length).tensor) << k;
+}
+
 // Cycles go over the same strains again and again: what tells them apart is the order of the rows.
 TEST(StraightPath, CyclesAreToldApartWithoutRowsAtTheCorners) {
   Path cycles{0.7, Branch::unloading, {segment(Mode::D2, "xyz", false, ExtentKind::eps_dev, 0.05)}};
