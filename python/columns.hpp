@@ -47,14 +47,16 @@ pybind11::object column_of(const std::vector<Row>& rows, std::string_view name, 
     if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
       if (name == field.name) column = looking_at(&value, {count}, {step}, owner);
     } else if constexpr (requires { value.tensor; }) {
-      if (name == field.name) column = looking_at(value.tensor.data(), {count, 3, 3}, {step, number, 3 * number}, owner);
+      if (name == field.name)
+        column = looking_at(value.tensor.data(), {count, 3, 3}, {step, number, 3 * number}, owner);
       if (!component_of_field) return;
       const auto [i, j] = kComponentIndex[*component_of_field];
       column = looking_at(&value.tensor(i, j), {count}, {step}, owner);
     } else if (component_of_field) {
       pybind11::array_t<double> computed(count);
       for (std::size_t i = 0; i < rows.size(); ++i)
-        computed.mutable_at(static_cast<ssize_t>(i)) = component(std::invoke(field.access, rows[i]), *component_of_field);
+        computed.mutable_at(static_cast<ssize_t>(i)) =
+            component(std::invoke(field.access, rows[i]), *component_of_field);
       computed.attr("flags").attr("writeable") = false;
       column = std::move(computed);
     }
@@ -79,8 +81,7 @@ void add_columns(pybind11::class_<T, More...>& type, const RowsOf& rows_of) {
   type.def("keys", [](const T&) { return names_of_columns<Row>(); })
       .def("__iter__", [](const T&) { return py::iter(names_of_columns<Row>()); })
       .def("__len__", [](const T&) { return columns_of<Row>().size(); })
-      .def("__contains__",
-           [](const T&, const py::object& name) { return names_of_columns<Row>().contains(name); })
+      .def("__contains__", [](const T&, const py::object& name) { return names_of_columns<Row>().contains(name); })
       .def("__getitem__",
            [look_up](const py::object& self, const std::string& name) {
              py::object column = look_up(self, name);

@@ -73,20 +73,24 @@ struct FitWishes {
 
 FitWishes fit_wishes(const py::object& coupling, const py::object& loss, const py::object& starts, bool checks,
                      const py::object& prior) {
-  FitWishes wishes{.coupling = {}, .loss = choice_of<fit::Loss>(loss, "loss"), .starts = static_cast<int>(whole_number(starts, "starts", 1, 10000)),
-                   .checks = checks, .prior = prior};
+  FitWishes wishes{.coupling = {},
+                   .loss = choice_of<fit::Loss>(loss, "loss"),
+                   .starts = static_cast<int>(whole_number(starts, "starts", 1, 10000)),
+                   .checks = checks,
+                   .prior = prior};
   if (!coupling.is_none()) wishes.coupling = choice_of<Coupling>(coupling, "coupling");
   return wishes;
 }
 
-Calibration calibrate(const py::object& spec, const py::object& dataset, const py::object& output, const FitWishes& fit_as,
-                      const Wishes& wishes) {
+Calibration calibrate(const py::object& spec, const py::object& dataset, const py::object& output,
+                      const FitWishes& fit_as, const Wishes& wishes) {
   std::optional<dem::Spec> read;
   std::string name = "spec";
   if (!spec.is_none()) {
     if (!py::isinstance<py::dict>(spec)) name = file_of(spec, "spec").string();
-    read = given(spec, "spec", dem::read_spec,
-                 [](const Json& document, const fs::path&, const std::string& of) { return dem::spec_from_json(document, of); });
+    read = given(spec, "spec", dem::read_spec, [](const Json& document, const fs::path&, const std::string& of) {
+      return dem::spec_from_json(document, of);
+    });
   }
   const fs::path from = file_or_none(dataset, "dataset"), folder = file_of(output, "output");
   const bool no_prior = py::isinstance<py::str>(fit_as.prior) && text_of(fit_as.prior, "prior") == "none";
@@ -107,8 +111,10 @@ Calibration calibrate(const py::object& spec, const py::object& dataset, const p
   });
   const fs::path file = folder / "parameters.json";
   Calibration calibration{std::make_shared<Law>(result.calibration.law, file, file.string()),
-                          std::make_shared<Dataset>(std::move(result.dataset)), result.calibration.warnings, summary, folder};
-  if (!result.calibration.law.converged) raise_not_converged(unconverged(result.calibration, folder), py::cast(calibration));
+                          std::make_shared<Dataset>(std::move(result.dataset)), result.calibration.warnings, summary,
+                          folder};
+  if (!result.calibration.law.converged)
+    raise_not_converged(unconverged(result.calibration, folder), py::cast(calibration));
   return calibration;
 }
 
@@ -117,7 +123,8 @@ std::vector<std::uint64_t> seeds_of(const py::object& seeds) {
   if (seeds.is_none()) return numbers;
   if (!py::isinstance<py::iterable>(seeds)) throw InvalidInput("seeds: give a list of integers");
   for (const auto& seed : seeds)
-    numbers.push_back(static_cast<std::uint64_t>(whole_number(seed, "seeds", 0, std::numeric_limits<std::int64_t>::max())));
+    numbers.push_back(
+        static_cast<std::uint64_t>(whole_number(seed, "seeds", 0, std::numeric_limits<std::int64_t>::max())));
   return numbers;
 }
 
@@ -155,7 +162,8 @@ Predicted predict_path(const py::object& law, const py::object& path, const py::
 }
 
 py::object report(const py::object& folder, const py::object& output, const py::object& compare) {
-  const fs::path about = file_of(folder, "folder"), html = file_or_none(output, "output"), other = file_or_none(compare, "compare");
+  const fs::path about = file_of(folder, "folder"), html = file_or_none(output, "output"),
+                 other = file_or_none(compare, "compare");
   return to_python(result_of({}, [&](const Execution&) {
     if (!html.empty()) app::write_report(about, html, other);
     return app::report_json(about, other);
@@ -187,12 +195,13 @@ void add_results(py::module_& module) {
            }),
            py::arg("folder"), "Of a prediction that was made before.")
       .def_property_readonly("curves", &curves_of)
-      .def_property_readonly("recommended", [](const Predicted& self) { return to_string(self.content->recommended.rung); })
+      .def_property_readonly("recommended",
+                             [](const Predicted& self) { return to_string(self.content->recommended.rung); })
       .def_property_readonly("comparisons",
                              [](const Predicted& self) { return to_python(fields_to_json(self.content->comparisons)); })
       .def_property_readonly("warnings", [](const Predicted& self) { return self.content->warnings; })
-      .def_property_readonly("summary",
-                             [](const Predicted& self) { return to_python(app::summary_of(*self.content, self.folder)); })
+      .def_property_readonly(
+          "summary", [](const Predicted& self) { return to_python(app::summary_of(*self.content, self.folder)); })
       .def_property_readonly("folder", [](const Predicted& self) { return self.folder.string(); });
 }
 
@@ -203,7 +212,8 @@ void add_commands(py::module_& module) {
   const py::object none = py::none();
   module.def(
       "simulate",
-      [](const py::object& test, const py::object& output, const py::object& threads, const py::object& progress, bool resume) {
+      [](const py::object& test, const py::object& output, const py::object& threads, const py::object& progress,
+         bool resume) {
         return simulate(test, output, {threads, progress, resume, "grainlaw.simulate of Python"});
       },
       py::arg("test"), py::arg("output"), py::kw_only(), py::arg("threads") = none, py::arg("progress") = none,
@@ -211,8 +221,8 @@ void add_commands(py::module_& module) {
   module.def(
       "calibrate",
       [](const py::object& spec, const py::object& dataset, const py::object& output, const py::object& coupling,
-         const py::object& loss, const py::object& starts, bool checks, const py::object& prior, const py::object& threads,
-         const py::object& progress, bool resume) {
+         const py::object& loss, const py::object& starts, bool checks, const py::object& prior,
+         const py::object& threads, const py::object& progress, bool resume) {
         return calibrate(spec, dataset, output, fit_wishes(coupling, loss, starts, checks, prior),
                          {threads, progress, resume, "grainlaw.calibrate of Python"});
       },
@@ -228,10 +238,10 @@ void add_commands(py::module_& module) {
         return predict_path(law, path, output, model, start, {dem, against, seeds, spec, store},
                             {threads, progress, resume, "grainlaw.predict of Python"});
       },
-      py::arg("law"), py::arg("path"), py::arg("output"), py::kw_only(), py::arg("model") = none, py::arg("start") = none,
-      py::arg("dem") = false, py::arg("against") = none, py::arg("seeds") = none, py::arg("spec") = none,
-      py::arg("store") = none, py::arg("threads") = none, py::arg("progress") = none, py::arg("resume") = true,
-      "The calibrated law along a path, with bands, beside runs of it where there are any.");
+      py::arg("law"), py::arg("path"), py::arg("output"), py::kw_only(), py::arg("model") = none,
+      py::arg("start") = none, py::arg("dem") = false, py::arg("against") = none, py::arg("seeds") = none,
+      py::arg("spec") = none, py::arg("store") = none, py::arg("threads") = none, py::arg("progress") = none,
+      py::arg("resume") = true, "The calibrated law along a path, with bands, beside runs of it where there are any.");
   module.def("report", &report, py::arg("folder"), py::arg("output") = none, py::kw_only(), py::arg("compare") = none,
              "The page about a calibration, where `output` names its file; returns all numbers on it.");
 }

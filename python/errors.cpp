@@ -13,7 +13,8 @@ PyObject *error = nullptr, *invalid_input = nullptr, *not_converged = nullptr, *
 
 PyObject* add(py::module_& module, const char* name, const py::object& bases, app::ExitCode code, const char* doc) {
   const py::dict members(py::arg("exit_code") = static_cast<int>(code));
-  PyObject* made = PyErr_NewExceptionWithDoc((std::string("grainlaw.") + name).c_str(), doc, bases.ptr(), members.ptr());
+  PyObject* made =
+      PyErr_NewExceptionWithDoc((std::string("grainlaw.") + name).c_str(), doc, bases.ptr(), members.ptr());
   if (made == nullptr) throw py::error_already_set();
   module.attr(name) = py::handle(made);
   return made;

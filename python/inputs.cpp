@@ -29,9 +29,7 @@ std::string shown(py::handle object) {
   return "a " + type_of(object);
 }
 
-bool is_numpys(py::handle object) {
-  return py::hasattr(object, "dtype") && py::hasattr(object, "tolist");
-}
+bool is_numpys(py::handle object) { return py::hasattr(object, "dtype") && py::hasattr(object, "tolist"); }
 
 Json number_from(py::handle object, const std::string& name) {
   if (PyLong_Check(object.ptr())) {
@@ -61,7 +59,8 @@ Json value_from(py::handle object, const std::string& name, int depth) {
     Json json = Json::object();
     for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(object)) {
       const std::string text = text_of(key, name + ": a key");
-      json[text] = value_from(value, fmt::format("{}{}{}", name, depth == 0 ? ": " : ".", one_line(text, 40)), depth + 1);
+      json[text] =
+          value_from(value, fmt::format("{}{}{}", name, depth == 0 ? ": " : ".", one_line(text, 40)), depth + 1);
     }
     return json;
   }
@@ -73,7 +72,8 @@ Json value_from(py::handle object, const std::string& name, int depth) {
   }
   if (is_numpys(object)) return value_from(object.attr("tolist")(), name, depth + 1);
   if (py::hasattr(object, "__fspath__")) return file_of(object, name).string();
-  refuse(name, fmt::format("is of type {}, which no document holds; give numbers, text, lists or dicts", type_of(object)));
+  refuse(name,
+         fmt::format("is of type {}, which no document holds; give numbers, text, lists or dicts", type_of(object)));
 }
 
 }  // namespace
@@ -82,7 +82,8 @@ std::filesystem::path file_of(py::handle object, const std::string& name) {
   PyObject* bytes = nullptr;
   if (PyUnicode_FSConverter(object.ptr(), &bytes) == 0) {
     const py::error_already_set error;
-    if (!error.matches(PyExc_TypeError)) refuse(name, one_line(std::string(py::str(error.value())), 200) + " in the path of a file");
+    if (!error.matches(PyExc_TypeError))
+      refuse(name, one_line(std::string(py::str(error.value())), 200) + " in the path of a file");
     refuse(name, fmt::format("is of type {}; give the path of a file as str, bytes or os.PathLike", type_of(object)));
   }
   const std::string path = py::reinterpret_steal<py::bytes>(bytes);
@@ -134,8 +135,7 @@ py::array_t<double> numbers_of(py::handle object, const std::string& name, int d
   const char kind = given.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u')
     refuse(name, fmt::format("has the dtype {}; give real numbers", std::string(py::str(given.dtype()))));
-  if (given.ndim() != dimensions)
-    refuse(name, fmt::format("has {} dimensions; give {}", given.ndim(), dimensions));
+  if (given.ndim() != dimensions) refuse(name, fmt::format("has {} dimensions; give {}", given.ndim(), dimensions));
   auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   if (!numbers) throw std::bad_alloc();
   const double* data = numbers.data();
@@ -148,8 +148,6 @@ py::array_t<double> numbers_of(py::handle object, const std::string& name, int d
   return numbers;
 }
 
-py::object to_python(const OrderedJson& json) {
-  return py::module_::import("json").attr("loads")(json_text(json));
-}
+py::object to_python(const OrderedJson& json) { return py::module_::import("json").attr("loads")(json_text(json)); }
 
 }  // namespace grainlaw::python

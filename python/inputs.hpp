@@ -27,7 +27,8 @@ Json document_of(pybind11::handle object, const std::string& name);
 /// folder, or the path of a JSON file, whose files are relative to its own.
 template <class Read, class Take>
 auto given(pybind11::handle object, const std::string& name, const Read& read, const Take& take) {
-  if (pybind11::isinstance<pybind11::dict>(object)) return take(document_of(object, name), std::filesystem::path("."), name);
+  if (pybind11::isinstance<pybind11::dict>(object))
+    return take(document_of(object, name), std::filesystem::path("."), name);
   return read(file_of(object, name));
 }
 

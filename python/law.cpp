@@ -36,7 +36,9 @@ std::optional<double> if_number(double value) {
   return std::isnan(value) ? std::nullopt : std::optional<double>(value);
 }
 
-Parameter parameter_of(const Law& self, std::size_t i) { return {i, self.law.estimates[i], *fields(self.law.parameters)[i]}; }
+Parameter parameter_of(const Law& self, std::size_t i) {
+  return {i, self.law.estimates[i], *fields(self.law.parameters)[i]};
+}
 
 /// States at the ends of steps, [paths][steps].
 struct Batch {
@@ -69,7 +71,7 @@ struct Wanted {
   Rung rung;
   Initial initial;
   bool bands;
-  const Path* path = nullptr;                           ///< where the law decides the strain
+  const Path* path = nullptr;                              ///< where the law decides the strain
   const std::vector<StraightSegment>* segments = nullptr;  ///< elsewhere
   int per_segment = 0;
   std::vector<predict::OutputPoint> points = {};
@@ -77,7 +79,8 @@ struct Wanted {
 
   predict::Prediction made(const RunControl& control) const {
     if (path != nullptr)
-      return predict::predict_by_law(rung, law.parameters, law.coupling, *path, start, per_segment, {}, law.range, control);
+      return predict::predict_by_law(rung, law.parameters, law.coupling, *path, start, per_segment, {}, law.range,
+                                     control);
     if (!bands)
       return predict::predict(rung, law.parameters, law.coupling, *segments, start, points, {}, law.range, control);
     return predict::predict_with_bands(rung, law, *segments, start, initial == Initial::law, points, control);
@@ -96,10 +99,9 @@ constexpr std::size_t kShortWork = 5000;
 Curve carried_out(const Wanted& wanted) {
   Curve curve{nullptr, wanted.initial, {}};
   if (wanted.work() > kShortWork) {
-    curve.prediction = result_of(
-        {.threads = py::int_(1)}, [&](const Execution& execution) {
-          return std::make_shared<predict::Prediction>(wanted.made({{}, execution.stop}));
-        });
+    curve.prediction = result_of({.threads = py::int_(1)}, [&](const Execution& execution) {
+      return std::make_shared<predict::Prediction>(wanted.made({{}, execution.stop}));
+    });
   } else {
     const py::gil_scoped_release unlocked;
     curve.prediction = std::make_shared<predict::Prediction>(wanted.made({}));
@@ -138,9 +140,12 @@ Curve predicted_path(const Law& self, const StrainPath& path, Rung rung, int poi
 Curve predicted(const Law& self, py::handle path, py::handle model, py::handle points, bool bands, py::handle start) {
   const Rung rung = rung_of(self, model);
   const Initial initial = choice_of<Initial>(start, "start");
-  if (py::isinstance<Test>(path)) return predicted_rows(self, path.cast<const Test&>().get().record, rung, initial, bands);
-  if (initial == Initial::measured) throw InvalidInput("start: 'measured' is that of a Test; give one in place of the path");
-  return predicted_path(self, *path_of(path), rung, static_cast<int>(whole_number(points, "points", 1, 1'000'000)), bands);
+  if (py::isinstance<Test>(path))
+    return predicted_rows(self, path.cast<const Test&>().get().record, rung, initial, bands);
+  if (initial == Initial::measured)
+    throw InvalidInput("start: 'measured' is that of a Test; give one in place of the path");
+  return predicted_path(self, *path_of(path), rung, static_cast<int>(whole_number(points, "points", 1, 1'000'000)),
+                        bands);
 }
 
 Batch predicted_batch(const Law& self, py::handle strain, py::handle nu, py::handle model, py::handle accuracy,
@@ -148,14 +153,16 @@ Batch predicted_batch(const Law& self, py::handle strain, py::handle nu, py::han
   const auto strains = numbers_of(strain, "strain", 3);
   const py::ssize_t paths = strains.shape(0), steps = strains.shape(1);
   if (strains.shape(2) != 6)
-    throw InvalidInput(fmt::format("strain: has the shape ({}, {}, {}); give (paths, steps, 6), the components xx, yy, zz, "
-                                   "yz, xz, xy",
-                                   paths, steps, strains.shape(2)));
+    throw InvalidInput(
+        fmt::format("strain: has the shape ({}, {}, {}); give (paths, steps, 6), the components xx, yy, zz, "
+                    "yz, xz, xy",
+                    paths, steps, strains.shape(2)));
   const bool scalar = py::isinstance<py::float_>(nu) || py::isinstance<py::int_>(nu);
   const std::vector<double> same(scalar ? static_cast<std::size_t>(paths) : 0, scalar ? finite_number(nu, "nu") : 0);
   const auto densities = scalar ? py::array_t<double>() : numbers_of(nu, "nu", 1);
   if (!scalar && densities.shape(0) != paths)
-    throw InvalidInput(fmt::format("nu: has {} values for {} paths; give one for each, or one number", densities.shape(0), paths));
+    throw InvalidInput(
+        fmt::format("nu: has {} values for {} paths; give one for each, or one number", densities.shape(0), paths));
   const Rung rung = rung_of(self, model);
   const double tolerance = finite_number(accuracy, "accuracy");
   if (!(tolerance >= 1e-14 && tolerance < 1))
@@ -205,7 +212,8 @@ py::dict range_of(const Law& self) {
 void add_parameter(py::module_& module) {
   plain_class<Parameter>(module, "Parameter", "A parameter of the law as the data determine it; all are dimensionless.")
       .def_property_readonly("name", [](const Parameter& p) { return p.info().name; })
-      .def_property_readonly("value", [](const Parameter& p) { return p.known() ? std::optional(p.value) : std::nullopt; })
+      .def_property_readonly("value",
+                             [](const Parameter& p) { return p.known() ? std::optional(p.value) : std::nullopt; })
       .def_property_readonly("standard_error", [](const Parameter& p) { return if_number(p.estimate.standard_error); })
       .def_property_readonly("degrees_of_freedom",
                              [](const Parameter& p) { return if_number(p.estimate.degrees_of_freedom); })
@@ -223,21 +231,23 @@ void add_parameter(py::module_& module) {
       .def_property_readonly("bounds", [](const Parameter& p) { return std::pair(p.info().lower, p.info().upper); })
       .def_property_readonly("published", [](const Parameter& p) { return p.info().published; })
       .def("__repr__", [](const Parameter& p) {
-        return p.known() ? fmt::format("<Parameter {} = {:.6g} ({})>", p.info().name, p.value, to_string(p.estimate.status))
-                         : fmt::format("<Parameter {}: not identified>", p.info().name);
+        return p.known()
+                   ? fmt::format("<Parameter {} = {:.6g} ({})>", p.info().name, p.value, to_string(p.estimate.status))
+                   : fmt::format("<Parameter {}: not identified>", p.info().name);
       });
 }
 
 void add_batch(py::module_& module) {
   plain_class<Batch>(module, "Batch", "The law's state at the end of each step of each path; zero while unjammed.")
-      .def_property_readonly("P_star",
-                             [](const py::object& self) {
-                               const Batch& batch = self.cast<const Batch&>();
-                               static const LawState<double> nothing{};
-                               const auto& first = batch.states.empty() ? nothing : batch.states.front();
-                               constexpr auto step = static_cast<py::ssize_t>(sizeof(LawState<double>));
-                               return looking_at(&first.P, {batch.paths, batch.steps}, {batch.steps * step, step}, self);
-                             })
+      .def_property_readonly(
+          "P_star",
+          [](const py::object& self) {
+            const Batch& batch = self.cast<const Batch&>();
+            static const LawState<double> nothing{};
+            const auto& first = batch.states.empty() ? nothing : batch.states.front();
+            constexpr auto step = static_cast<py::ssize_t>(sizeof(LawState<double>));
+            return looking_at(&first.P, {batch.paths, batch.steps}, {batch.steps * step, step}, self);
+          })
       .def_property_readonly("sigma_dev", [](const Batch& batch) { return batch.components(&LawState<double>::sigma); })
       .def_property_readonly("fabric_dev", [](const Batch& batch) { return batch.components(&LawState<double>::F); });
 }
@@ -264,12 +274,14 @@ void add_law(py::module_& module) {
     for (std::size_t i = 0; i < kParameterCount; ++i) all[parameter_table()[i].name] = parameter_of(self, i);
     return all;
   };
-  plain_class<Law, std::shared_ptr<Law>>(module, "CalibratedLaw",
-                                        "A calibrated law: parameters.json, or the folder of a calibration. Immutable.")
+  plain_class<Law, std::shared_ptr<Law>>(
+      module, "CalibratedLaw", "A calibrated law: parameters.json, or the folder of a calibration. Immutable.")
       .def(py::init([](const py::object& file) { return std::make_shared<Law>(*law_of(file)); }), py::arg("file"))
-      .def_property_readonly("file", [](const Law& self) { return self.file.empty() ? py::none() : py::cast(self.file.string()); })
+      .def_property_readonly(
+          "file", [](const Law& self) { return self.file.empty() ? py::none() : py::cast(self.file.string()); })
       .def_property_readonly("parameters", parameters)
-      .def("__getitem__", [](const Law& self, const std::string& name) { return parameter_of(self, parameter_index(name)); })
+      .def("__getitem__",
+           [](const Law& self, const std::string& name) { return parameter_of(self, parameter_index(name)); })
       .def_property_readonly("covariance", &covariance)
       .def_property_readonly("range", &range_of)
       .def_property_readonly("coupling", [](const Law& self) { return to_string(self.law.coupling); })
@@ -288,14 +300,15 @@ void add_law(py::module_& module) {
       .def(
           "save",
           [](const Law& self, const py::object& file) {
-            write_parameters(file_of(file, "file"), {self.law, Json(provenance({.command = "CalibratedLaw.save of Python"}))});
+            write_parameters(file_of(file, "file"),
+                             {self.law, Json(provenance({.command = "CalibratedLaw.save of Python"}))});
           },
           py::arg("file"), "Writes parameters.json.")
-      .def("predict", &predicted, py::arg("path"), py::arg("model") = py::none(), py::kw_only(), py::arg("points") = 200,
-           py::arg("bands") = false, py::arg("start") = "law",
+      .def("predict", &predicted, py::arg("path"), py::arg("model") = py::none(), py::kw_only(),
+           py::arg("points") = 200, py::arg("bands") = false, py::arg("start") = "law",
            "The law along a path, or at the rows of a Test. In memory; grainlaw.predict writes files.")
-      .def("predict_batch", &predicted_batch, py::arg("strain"), py::arg("nu"), py::arg("model") = py::none(), py::kw_only(),
-           py::arg("accuracy") = 1e-8, py::arg("threads") = py::none(),
+      .def("predict_batch", &predicted_batch, py::arg("strain"), py::arg("nu"), py::arg("model") = py::none(),
+           py::kw_only(), py::arg("accuracy") = 1e-8, py::arg("threads") = py::none(),
            "The law along many strain histories, from arrays of (paths, steps, 6) and (paths,).")
       .def("__repr__", [](const Law& self) { return fmt::format("<CalibratedLaw {}>", self.name); });
 }

@@ -32,10 +32,10 @@ struct Law {
   Law(CalibratedLaw read, std::filesystem::path source, std::string called);
 
   CalibratedLaw law;
-  std::filesystem::path file;                      ///< where it stands; empty when it was changed since
-  std::string name;                                ///< in messages
-  std::array<bool, kRungs.size()> serves{};        ///< whether all parameters of the rung have values
-  std::optional<Rung> richest;                     ///< of those
+  std::filesystem::path file;                ///< where it stands; empty when it was changed since
+  std::string name;                          ///< in messages
+  std::array<bool, kRungs.size()> serves{};  ///< whether all parameters of the rung have values
+  std::optional<Rung> richest;               ///< of those
 };
 
 /// grainlaw.Prediction.
@@ -71,8 +71,8 @@ std::shared_ptr<const StrainPath> path_of(pybind11::handle object);
 std::shared_ptr<const Law> law_of(pybind11::handle object);
 
 // The classes and functions of the module, in the order in which they know each other:
-void add_series(pybind11::module_& module);       ///< Path, Series, Test, Dataset, Prediction
-void add_law(pybind11::module_& module);          ///< Parameter, Batch, CalibratedLaw
-void add_commands(pybind11::module_& module);     ///< simulate, calibrate, predict, report and their results
+void add_series(pybind11::module_& module);    ///< Path, Series, Test, Dataset, Prediction
+void add_law(pybind11::module_& module);       ///< Parameter, Batch, CalibratedLaw
+void add_commands(pybind11::module_& module);  ///< simulate, calibrate, predict, report and their results
 
 }  // namespace grainlaw::python

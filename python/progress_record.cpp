@@ -52,7 +52,7 @@ std::pair<double, std::string> ProgressRecord::status() {
   std::string text;
   for (const Job& job : jobs_) {
     expected += job.expected;
-    covered += job.done         ? job.expected
+    covered += job.done        ? job.expected
                : unit_.empty() ? job.expected * job.fraction
                                : std::min(job.work, 0.99 * job.expected);
     if (job.running) text += (text.empty() ? "" : ", ") + (job.stage.empty() ? job.name : job.stage);

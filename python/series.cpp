@@ -24,7 +24,8 @@ py::object path_to_python(const Path& path) {
     if (segment.mode == Mode::tensor) continue;
     OrderedJson& written = json["segments"][k];
     const bool forward = segment.direction.tensor == direction_of(segment.mode).tensor;
-    if (!segment.spin.isZero(0) || (!forward && segment.direction.tensor != direction_of(segment.mode, "xyz", true).tensor)) {
+    if (!segment.spin.isZero(0) ||
+        (!forward && segment.direction.tensor != direction_of(segment.mode, "xyz", true).tensor)) {
       written.erase("mode");
       continue;
     }
@@ -42,13 +43,16 @@ void add_path(py::module_& module) {
       .def_property_readonly("segments", [](const StrainPath& self) { return self.file.path.segments.size(); })
       .def("to_dict", [](const StrainPath& self) { return path_to_python(self.file.path); })
       .def("__repr__", [](const StrainPath& self) {
-        return fmt::format("<Path {} from nu = {}, {} segments>", self.name, self.file.path.nu, self.file.path.segments.size());
+        return fmt::format("<Path {} from nu = {}, {} segments>", self.name, self.file.path.nu,
+                           self.file.path.segments.size());
       });
 }
 
 void add_series_type(py::module_& module) {
-  auto type = plain_class<Series>(module, "Series", "What was seen of a packing along a test: read-only arrays by the CSV's names.");
-  add_columns<Observation>(type, [](const Series& self) -> const auto& { return *self.rows; });
+  auto type = plain_class<Series>(module, "Series",
+                                  "What was seen of a packing along a test: read-only arrays by the CSV's names.");
+  add_columns<Observation>(
+      type, [](const Series& self) -> const auto& { return *self.rows; });
   type.def("__repr__", [](const Series& self) { return fmt::format("<Series of {} rows>", self.rows->size()); });
 }
 
@@ -57,10 +61,13 @@ void add_test(py::module_& module) {
       .def_property_readonly("name", [](const Test& self) { return self.get().record.name; })
       .def_property_readonly("role", [](const Test& self) { return to_string(self.get().record.role); })
       .def_property_readonly("path", [](const Test& self) { return path_to_python(self.get().record.path); })
-      .def_property_readonly("packing", [](const Test& self) { return to_python(fields_to_json(self.get().record.packing)); })
+      .def_property_readonly("packing",
+                             [](const Test& self) { return to_python(fields_to_json(self.get().record.packing)); })
       .def_property_readonly("warnings", [](const Test& self) { return self.get().warnings; })
       .def_property_readonly("series",
-                             [](const Test& self) { return Series{{self.dataset, &self.get().record.rows}}; })
+                             [](const Test& self) {
+                               return Series{{self.dataset, &self.get().record.rows}};
+                             })
       .def("__repr__", [](const Test& self) {
         return fmt::format("<Test {}, {}>", self.get().record.name, to_string(self.get().record.role));
       });
@@ -105,24 +112,29 @@ void add_dataset(py::module_& module) {
 
 void add_prediction(py::module_& module) {
   auto type = plain_class<Curve>(module, "Prediction", "The law along a path: read-only arrays by the CSV's names.");
-  add_columns<predict::PredictedRow>(type, [](const Curve& self) -> const auto& { return self.prediction->rows; });
+  add_columns<predict::PredictedRow>(
+      type, [](const Curve& self) -> const auto& { return self.prediction->rows; });
   type.def_property_readonly("model", [](const Curve& self) { return to_string(self.prediction->model); })
       .def_property_readonly("start", [](const Curve& self) { return to_string(self.initial); })
       .def_property_readonly("seed", [](const Curve& self) { return self.seed; })
       .def_property_readonly("unjammed", [](const Curve& self) { return self.prediction->unjammed; })
-      .def_property_readonly("events", [](const Curve& self) { return to_python(fields_to_json(self.prediction->events)); })
+      .def_property_readonly("events",
+                             [](const Curve& self) { return to_python(fields_to_json(self.prediction->events)); })
       .def_property_readonly("warnings", [](const Curve& self) { return self.prediction->warnings; })
       .def_property_readonly("statistics",
                              [](const Curve& self) { return to_python(fields_to_json(self.prediction->statistics)); })
       .def("__repr__", [](const Curve& self) {
-        return fmt::format("<Prediction by {}, {} rows>", to_string(self.prediction->model), self.prediction->rows.size());
+        return fmt::format("<Prediction by {}, {} rows>", to_string(self.prediction->model),
+                           self.prediction->rows.size());
       });
 }
 
 }  // namespace
 
 StrainPath::StrainPath(PathFile read, std::string called)
-    : file(std::move(read)), name(std::move(called)), segments(law_decides(file.path) ? decltype(segments){} : resolve(file.path)) {}
+    : file(std::move(read)),
+      name(std::move(called)),
+      segments(law_decides(file.path) ? decltype(segments){} : resolve(file.path)) {}
 
 std::shared_ptr<const StrainPath> path_of(py::handle object) {
   if (py::isinstance<StrainPath>(object)) return object.cast<std::shared_ptr<StrainPath>>();

@@ -54,10 +54,11 @@ void check_corners(const ForeignRows& foreign, const TestRecord& record) {
     const Eigen::Matrix3d corner = segments[static_cast<std::size_t>(next.segment)].strain_start.tensor;
     const double before = (last.strain.tensor - corner).norm();
     if (before > kAtCorner)
-      throw InvalidInput(fmt::format(
-          "{}: is the last row of segment {} of the path, {:.3g} of strain before its end; keep the row at each corner, "
-          "correct the path, or leave it out to have it found",
-          foreign.place(i - 1, "strain"), last.segment, before));
+      throw InvalidInput(
+          fmt::format("{}: is the last row of segment {} of the path, {:.3g} of strain before its end; keep the row at "
+                      "each corner, "
+                      "correct the path, or leave it out to have it found",
+                      foreign.place(i - 1, "strain"), last.segment, before));
   }
 }
 

@@ -7,6 +7,7 @@
 #include "model/files/digest.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
+#include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
 #include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
@@ -119,6 +120,8 @@ TestMapping test_from(const Json& document, const Json& json, const std::map<std
   const std::string where = fmt::format("{}: {}", mapping.name, place);
   TestMapping test;
   test.name = json["name"];
+  if (!is_safe_name(test.name))
+    throw InvalidInput(fmt::format("{}.name: '{}' is no name for a file; rename it", where, one_line(test.name, 60)));
   if (test.name.ends_with(".extra"))  // of the columns that another test leaves over
     throw InvalidInput(fmt::format("{}.name: '{}' ends like the files of extra columns; rename it", where, test.name));
   test.role = value_of<Role>(json["role"].get<std::string>(), "role");

@@ -133,8 +133,8 @@ Place nearest(const StraightSegment& segment, const Tensor& strain, double from)
 }
 
 /// The first row of a segment ends the one before it where it is the corner, to `tolerance`, and no row before is nearer.
-void end_at_corners(const std::vector<StraightSegment>& segments, const std::vector<Observation>& rows, double tolerance,
-                    std::vector<int>& of_row) {
+void end_at_corners(const std::vector<StraightSegment>& segments, const std::vector<Observation>& rows,
+                    double tolerance, std::vector<int>& of_row) {
   for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
     if (of_row[i] == of_row[i - 1] || of_row[i] != of_row[i + 1]) continue;
     const Tensor& corner = segments[static_cast<std::size_t>(of_row[i])].strain_start.tensor;

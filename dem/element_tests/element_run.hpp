@@ -24,8 +24,9 @@ struct ElementTestOptions {
   int rows = 200;                      ///< rows of each segment (besides the first row of the test)
   double warn_energy_residual = 1e-3;  ///< imbalance over (largest |W| so far + E_kin(0) + D) that is warned of [-]
   double stop_energy_residual = 1e-2;  ///< beyond it the test stops with Error 'energy balance' [-]
-  double warn_inertial_number = 1e-3;  ///< beyond it the flow of a jammed packing is not quasi-static (hard case D25) [-]
-  bool check_time_step = true;         ///< refuse unstable steps; false only to see the balance stop it (D16)
+  double warn_inertial_number =
+      1e-3;                     ///< beyond it the flow of a jammed packing is not quasi-static (hard case D25) [-]
+  bool check_time_step = true;  ///< refuse unstable steps; false only to see the balance stop it (D16)
 };
 
 struct ElementTest {

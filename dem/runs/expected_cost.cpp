@@ -30,6 +30,10 @@ double kept(const PreparationOptions& o) {
   return static_cast<double>(o.keep_loading.size() + o.keep_unloading.size());
 }
 
+double frames(const TestSetup& test) {
+  return test.frames > 0 ? static_cast<double>(test.path.segments.size()) * test.frames + 1 : 0;
+}
+
 void add_preparation(const PreparationOptions& o, const fs::path& runs, ExpectedCost& cost) {
   ++cost.runs;
   cost.bytes += kBytesPerRecord + 2 * o.rows * kBytesPerRow + kept(o) * spheres(o) * kBytesPerKept;
@@ -43,7 +47,7 @@ void add_test(const PlannedTest& test, const fs::path& runs, ExpectedCost& cost)
   ++cost.runs;
   const double N = test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
   const double rows = static_cast<double>(test.path.segments.size()) * test.rows + 1;
-  cost.bytes += kBytesPerRecord + rows * kBytesPerRow + N * kBytesPerEnd;
+  cost.bytes += kBytesPerRecord + rows * kBytesPerRow + N * kBytesPerEnd + frames(test) * N * kBytesPerEnd;
   if (is_finished(runs, test_key(test)))
     ++cost.found;
   else
@@ -108,7 +112,7 @@ ExpectedCost expected_cost(const TestFile& test, const fs::path& output) {
   ExpectedCost cost = expected_cost({{test, "", Role::validation, prepared}}, output);
   const double N = test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
   cost.bytes += prepared ? kept(test.preparation) * N * kBytesPerKept + 2 * test.rows * kBytesPerRow
-                         : N * (kBytesPerEnd + kBytesPerTableRow);
+                         : N * (kBytesPerEnd + kBytesPerTableRow) + frames(test) * N * kBytesPerEnd;
   return cost;
 }
 

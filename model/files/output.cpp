@@ -105,6 +105,14 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
+/// Names that Windows keeps for devices, with any extension: a folder of results may go to a drive of its own.
+bool is_device(std::string_view name) {
+  std::string stem(name.substr(0, name.find('.')));
+  for (char& c : stem) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  if (stem.size() == 4 && (stem.starts_with("COM") || stem.starts_with("LPT"))) return stem[3] >= '1' && stem[3] <= '9';
+  return stem == "CON" || stem == "PRN" || stem == "AUX" || stem == "NUL";
+}
+
 }  // namespace
 
 void write_durably(const fs::path& file, std::string_view bytes) {
@@ -155,7 +163,7 @@ bool is_safe_name(std::string_view name) {
   const auto alphanumeric = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
   };
-  return !name.empty() && name.size() <= 100 && alphanumeric(name.front()) &&
+  return !name.empty() && name.size() <= 100 && alphanumeric(name.front()) && name.back() != '.' && !is_device(name) &&
          std::all_of(name.begin(), name.end(),
                      [&](char c) { return alphanumeric(c) || c == '.' || c == '-' || c == '_'; });
 }

@@ -24,7 +24,8 @@ void copy_durably(const std::filesystem::path& from, const std::filesystem::path
 /// Removes the temporary files that killed processes left in a folder; those of living ones stay.
 void remove_leftovers(const std::filesystem::path& folder);
 
-/// 1 to 100 of letters, digits, '.', '-', '_', beginning with a letter or a digit.
+/// 1 to 100 of letters, digits, '.', '-', '_', beginning with a letter or a digit, not ending with '.', and no device of Windows
+/// (CON, nul.csv).
 bool is_safe_name(std::string_view name);
 
 /// Creates `root` (and its parents) when absent and removes the leftovers in it. Throws InvalidInput when it is no

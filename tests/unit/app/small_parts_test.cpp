@@ -35,8 +35,8 @@ TEST_F(Files, DigestOfAFileIsThatOfItsBytes) {
 
 // Hard case S6.
 TEST_F(Files, KeepOutputInItsFolder) {
-  for (const char* name : {"a", "UNI-0.695", "a_b.c", "0"}) EXPECT_TRUE(is_safe_name(name)) << name;
-  for (const char* name : {"", ".", "..", ".hidden", "-x", "a/b", "../x", "/etc", "a\nb", "a b", "é"})
+  for (const char* name : {"a", "UNI-0.695", "a_b.c", "0", "CONE", "COM0", "com", "LPT12"}) EXPECT_TRUE(is_safe_name(name)) << name;
+  for (const char* name : {"", ".", "..", ".hidden", "-x", "a/b", "../x", "/etc", "a\nb", "a b", "é", "a.", "CON", "con", "Nul.csv", "AUX", "prn.x.y", "COM1", "lpt9.csv"})
     EXPECT_FALSE(is_safe_name(name)) << name;
   EXPECT_FALSE(is_safe_name(std::string(101, 'a')));
 
