@@ -161,7 +161,8 @@ pair_style granular
 pair_coeff * * hooke 1e8 1 tangential linear_nohistory 0 0 damping velocity
 neighbor 1e-4 bin
 compute p all pressure NULL virial
-compute d all reduce sum radius
+compute radii all property/atom radius
+compute d all reduce sum c_radii
 thermo_style custom step atoms c_p[1] c_p[2] c_p[3] c_d
 thermo_modify format float %.15g
 run 0
@@ -170,7 +171,7 @@ run 0
 E7
   last=$(awk '/ITEM: TIMESTEP/ { getline; print }' end-lammps-dump/end.spheres.dump)
   sed -i "s/LAST/$last/" in.txt
-  OMPI_MCA_btl=self lmp -in in.txt -log log.txt -screen none >out.txt 2>&1 </dev/null || fail "lmp: $(tail -3 log.txt out.txt)"
+  OMPI_MCA_btl=self lmp -in in.txt -log log.txt -screen none >out.txt 2>&1 </dev/null || fail "lmp: $(tail -n 3 log.txt out.txt)"
   "$python" - <<'E8' || fail lammps
 import csv, numpy as np
 rows = [l.split() for l in open("log.txt")]

@@ -59,7 +59,7 @@ refuse 'test.json: segments[0].extent: eps_vol cannot be reached' "$grainlaw" si
 echo '{"spheres": "s.csv", "cell": [[1,0,0],[0,1,0],[0,0,1]]}' >test.json
 printf 'id,x,y,z,r\n0,0.1,0.1,0.1,-0.1\n' >s.csv
 refuse 's.csv' "$grainlaw" simulate test.json
-echo '{"initial": {"nu": 0.7}, "segments": []}' >path.json
+echo '{"initial": {"nu": 0.7}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.1}}]}' >path.json
 echo '{}' >parameters.json
 refuse "parameters.json: misses the key 'format'" "$grainlaw" predict parameters.json path.json
 refuse 'none.json: cannot be opened' "$grainlaw" predict none.json path.json
