@@ -92,7 +92,7 @@ done
 cat >seeds/json/all.json <<'JSON'
 {"a": [0, -1, 1.5e-3, 1e308, 18446744073709551615, true, false, null, "\u00e9\ud83d\ude00\\\"\n", {}, []], "b": {"c": [[[]]]}} // end
 JSON
-echo '{"p": {"value": -0.0, "note": "x"}, "m": [[1e-300, -0.0], [0, 2.5e3]]}' >seeds/json/matrix.json
+echo '{"p": {"value": 0.5, "note": "x"}, "m": [[1e-300, -0.0], [0, 2.5e3]]}' >seeds/json/matrix.json
 cp path/path.json seeds/json
 cp -r seeds/json seeds/json-own
 rm seeds/json-own/all.json
