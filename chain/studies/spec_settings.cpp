@@ -18,7 +18,7 @@ constexpr std::size_t kLongestFolder = 100;  // of a safe name
 std::string folder_of(const std::string& name) {
   std::string folder = name.substr(0, kLongestFolder);
   std::replace_if(
-      folder.begin(), folder.end(), [](char c) { return !is_safe_name(std::string("a") + c); }, '-');
+      folder.begin(), folder.end(), [](char c) { return !is_safe_name(std::string("a") + c + "a"); }, '-');
   return is_safe_name(folder) ? folder : "setting" + folder.substr(0, kLongestFolder - 7);
 }
 

@@ -45,7 +45,7 @@ constexpr double kFarAway = 1e150;  // [m]; its square is finite
 /// Totals of one force pass; `f` is the net force on a sphere over k, `g` = f/sqrt(m), `w` = sqrt(m) v.
 struct Totals {
   double gw = 0, gg = 0, ww = 0;  // sums of g.w, g.g, w.w
-  PassSums contacts;
+  OverlapSums contacts;
   double f2_max = 0;  // largest f.f [m^2]
 };
 
@@ -346,7 +346,7 @@ Relaxation relax(State& state, const EngineOptions& engine, const RelaxOptions& 
   for (;;) {
     const Totals totals = minimiser.forces();
     ++result.passes;
-    const PassSums& contacts = totals.contacts;
+    const OverlapSums& contacts = totals.contacts;
     result.E_after = 0.25 * k * contacts.overlap2;  // k delta^2/2 of each contact
     if (result.passes == 1) result.E_before = result.E_after;
     result.max_net_force = k * std::sqrt(totals.f2_max);

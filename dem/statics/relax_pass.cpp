@@ -14,14 +14,14 @@ namespace grainlaw::dem {
 namespace HWY_NAMESPACE {
 namespace {
 
-PassSums contact_forces_on(RelaxField& field, std::size_t begin, std::size_t end) {
+OverlapSums contact_forces_on(RelaxField& field, std::size_t begin, std::size_t end) {
   const Tag<double> d;
   using V = hn::Vec<Tag<double>>;
   const V zero = hn::Zero(d);
   const double *places = field.place.front().data(), *shifts = field.shift.front().data(),
                *motions = field.w.front().data();
   alignas(64) double overlap[kLanes] = {}, overlap2[kLanes] = {}, gx[kLanes], gy[kLanes], gz[kLanes], f2[kLanes];
-  PassSums sums;
+  OverlapSums sums;
   for (std::size_t group = begin; group < end; ++group) {
     const std::uint32_t* sphere = field.sphere.data() + group * kLanes;
     std::uint32_t own[kLanes];
@@ -75,7 +75,7 @@ namespace grainlaw::dem {
 
 HWY_EXPORT(contact_forces_on);
 
-PassSums contact_forces(RelaxField& field, std::size_t begin, std::size_t end) {
+OverlapSums contact_forces(RelaxField& field, std::size_t begin, std::size_t end) {
   return HWY_DYNAMIC_DISPATCH(contact_forces_on)(field, begin, end);
 }
 

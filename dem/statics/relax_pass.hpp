@@ -30,13 +30,13 @@ struct RelaxField {
 };
 
 /// Sums over contacts, each met twice.
-struct PassSums {
+struct OverlapSums {
   double overlap = 0;   ///< [m]
   double overlap2 = 0;  ///< of squares [m^2]
   std::size_t meetings = 0;
 };
 
 /// Fills g of the spheres in the groups [begin, end). A sphere that shares its place with another one has a g[3] that is not finite.
-PassSums contact_forces(RelaxField& field, std::size_t begin, std::size_t end);
+OverlapSums contact_forces(RelaxField& field, std::size_t begin, std::size_t end);
 
 }  // namespace grainlaw::dem

@@ -248,7 +248,8 @@ TEST_F(ReportFolder, ErrorAgainstCostIsDrawnWhereAStudyIsThere) {
                      {"reached_standard_error", 0.01},
                      {"dominated_by", Json::array()}};
   fs::create_directories(dir_ / "studies" / "steps");
-  write_json(dir_ / "studies" / "steps" / "study.json", OrderedJson{{"study", "chain"},
+  write_json(dir_ / "studies" / "steps" / "study.json", OrderedJson{{"format", "grainlaw study"},
+                                                                    {"study", "chain"},
                                                                     {"base", nullptr},
                                                                     {"error", "in words"},
                                                                     {"default", {{"setting", "base"}}},

@@ -238,7 +238,7 @@ TEST_F(Import, RefusesWithFileLineColumnAndRemedy) {
                    declared, R"("path": {"segments": [{"mode": "UNI", "extent": {"eps_dev": 0.2}}]},)"),
                {"t.csv: line ", "path_tolerance", "path"});
   expect_parts(why(nothing, declared, R"("path": {"segments": [{"mode": "D2", "extent": {"eps_dev": 0.1003}},
-                                                              {"mode": "D2", "extent": {"eps_dev": 0.15}}]},)"),
+                                                              {"mode": "D2", "extent": {"eps_dev": 0.16}}]},)"),
                {"t.csv: line ", "is the last row of segment 0", "before its end; keep the row at each corner"});
   expect_parts(why(nothing, declared + R"(, "columns": {"nu": "phi"})"),
                {"t.csv: has no column 'phi', but t, nu, exx"});

@@ -79,10 +79,10 @@ TEST(LawQuantities, WhatIsNotIdentifiedIsMissing) {
   fit::Calibration c = calibrated(2);
   c.law.estimates[parameter_index("anisotropy.a2")].status = Status::not_identified;
   EXPECT_EQ(richest_rung(c.law), Rung::reduced);
-  c.law.estimates[parameter_index("fabric_rate.Q_c")].status = Status::not_identified;
+  c.law.estimates[parameter_index("stress_rate.Q_c")].status = Status::not_identified;
   EXPECT_FALSE(richest_rung(c.law).has_value());
   for (const StudyQuantity& q : law_quantities(c, {0.70}, 2))
-    EXPECT_EQ(std::isnan(q.values(0)), q.name == "beta_F@0.70") << q.name;
+    EXPECT_EQ(std::isnan(q.values(0)), q.name == "beta_s@0.70") << q.name;
 }
 
 }  // namespace

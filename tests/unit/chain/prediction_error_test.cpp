@@ -77,7 +77,7 @@ TEST(PredictionError, NothingIsKnownByALawThatCannotPredict) {
   CalibratedLaw c = law_with_errors(0.002);
   c.estimates[parameter_index("anisotropy.a2")].status = Status::not_identified;
   EXPECT_EQ(prediction_error(c, shear(), {}).rung, Rung::reduced);
-  c.estimates[parameter_index("fabric_rate.Q_c")].status = Status::not_identified;
+  c.estimates[parameter_index("stress_rate.Q_c")].status = Status::not_identified;
   const PredictionError e = prediction_error(c, shear(), {});
   ASSERT_EQ(e.quantities.size(), 3u);
   EXPECT_TRUE(std::isnan(e.quantities[0].half_width));
