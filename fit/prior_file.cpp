@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/files/one_line.hpp"
@@ -50,6 +51,10 @@ VariancePrior prior_from_json(const Json& json, const std::string& name) {
     const Json &degrees = json.at("degrees_of_freedom"), &matrix = json.at("covariance");
     if (degrees.size() != names.size() || matrix.size() != names.size())
       refuse("degrees_of_freedom and covariance need one entry for each of names");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (std::ranges::none_of(parameter_table(), [&](const ParameterInfo& p) { return p.name == names[i]; }))
+        refuse(fmt::format("names[{}]: '{}' is no parameter of the law", i, names[i]));
+    }
     for (std::size_t i = 0; i < names.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(parameter_index(names[i]));
       prior.degrees_of_freedom(k) = degrees[i];

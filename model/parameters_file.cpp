@@ -98,7 +98,8 @@ OrderedJson estimate_to_json(const Estimate& estimate) {
   OrderedJson object;
   object["value"] = has_value ? number_or_null(estimate.value) : OrderedJson(nullptr);
   object["standard_error"] = has_value ? number_or_null(estimate.standard_error) : OrderedJson(nullptr);
-  object["degrees_of_freedom"] = has_value ? number_or_null(estimate.degrees_of_freedom) : OrderedJson(nullptr);
+  if (!has_value || !std::isinf(estimate.degrees_of_freedom))  // without the key: infinite
+    object["degrees_of_freedom"] = has_value ? number_or_null(estimate.degrees_of_freedom) : OrderedJson(nullptr);
   const double half = has_value ? estimate.half_width() : std::nan("");
   if (std::isfinite(half)) object["interval_95"] = {estimate.value - half, estimate.value + half};
   object["status"] = to_string(estimate.status);

@@ -69,6 +69,8 @@ void write_prediction_series(const std::filesystem::path& file, const std::vecto
   write_durably(file, table_text(rows));
 }
 
+constexpr double kMostOfACurve = 1e100;  // what follows from the columns must be finite
+
 std::vector<PredictedRow> read_prediction_series(const std::filesystem::path& file) {
   CsvReader reader(file);
   const auto columns = matched<PredictedRow>(reader);
@@ -78,7 +80,10 @@ std::vector<PredictedRow> read_prediction_series(const std::filesystem::path& fi
     PredictedRow row;
     row.state.sigma.setZero();
     row.state.F.setZero();
-    for (std::size_t i = 0; i < values.size(); ++i) set_value(reader, row, *columns[i], values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (std::abs(values[i]) > kMostOfACurve) reader.refuse(columns[i]->name, "is beyond 1e100; predict again");
+      set_value(reader, row, *columns[i], values[i]);
+    }
     rows.push_back(row);
   }
   return rows;

@@ -106,8 +106,12 @@ std::string expected_text(const Json& s) {
                                               : fmt::format("{} to {}", least, most);
     return fmt::format("an array of {}{} elements", count, s.value("uniqueItems", false) ? " different" : "");
   }
-  if (type == "string")
-    return s.contains("maxLength") ? fmt::format("a text of at most {} characters", s["maxLength"].dump()) : "a text";
+  if (type == "string") {
+    const bool excludes = s.value("pattern", "").starts_with("^[^");
+    return s.contains("maxLength") ? fmt::format("a text of at most {} characters{}", s["maxLength"].dump(),
+                                                 excludes ? " without control characters" : "")
+                                   : "a text";
+  }
   return type == "object" ? "an object" : "";
 }
 

@@ -27,7 +27,8 @@ void put(const std::filesystem::path& file, std::string_view bytes) {
 
 void check_message(const std::string& message, const std::string& name) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  const char* fault = message.find(name) == std::string::npos                   ? "does not name the file"
+  const bool named = message.find(name) != std::string::npos || message.starts_with('/');  // a file that the bytes name
+  const char* fault = !named                                                    ? "does not name the file"
                       : std::any_of(message.begin(), message.end(), is_control) ? "is not one line of text"
                       : message.size() > kLongestMessage                        ? "is too long"
                                                                                 : nullptr;

@@ -20,7 +20,7 @@ cat >"$work/path.json" <<'JSON'
 JSON
 cat >"$work/modes.json" <<'JSON'
 {"initial": {"nu": 0.74}, "segments": [{"mode": "D3", "axes": "yzx", "reverse": true, "cycles": {"amplitude": 0.01, "count": 2, "one_sided": true}},
- {"velocity_gradient": [[-1, 1, 0], [0, 0, 0], [0, 0, 0.5]], "extent": {"path": 0.1}},
+ {"velocity_gradient": [[-1, 1, 0], [0, 0, 0], [0, 0, 0.5]], "extent": {"eps_dev": 0.1}},
  {"mode": "UNI", "free": {"xx": {"quantity": "stress", "rate": 0}}, "extent": {"target_nu": 0.76}}]}
 JSON
 cat >"$work/test.json" <<'JSON'
