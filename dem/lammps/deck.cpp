@@ -99,10 +99,14 @@ std::string deck_run(std::uint64_t from, std::uint64_t to, std::uint64_t fixed, 
 std::string deck_look(const std::string& name) {
   // `run 0`: the cell has moved on since the last forces, and images have not followed
   return fmt::format(
+      "dump spheres all custom 1 {0}.spheres id x y z radius vx vy vz\n"
+      "dump_modify spheres sort id first yes format float %.17g\n"
+      "dump contacts all local 1 {0}.contacts c_pair[1] c_pair[2] c_contact[1] c_contact[2] c_contact[3] c_contact[4] "
+      "c_contact[5] c_contact[6] c_contact[7] c_contact[8] c_contact[9]\n"
+      "dump_modify contacts first yes format float %.17g\n"
       "run 0 post no\n"
-      "write_dump all custom {0}.spheres id x y z radius vx vy vz modify sort id format float %.17g\n"
-      "write_dump all local {0}.contacts c_pair[1] c_pair[2] c_contact[1] c_contact[2] c_contact[3] c_contact[4] "
-      "c_contact[5] c_contact[6] c_contact[7] c_contact[8] c_contact[9] modify format float %.17g\n"
+      "undump spheres\n"
+      "undump contacts\n"
       "write_restart {0}.restart\n"
       "print \"{0}\" append marks screen no\n",
       name);
