@@ -115,6 +115,7 @@ std::string deck_look(const std::string& name) {
 std::string deck_relaxation(double volume, std::uint64_t steps, double time_step, const DeckSpheres& s) {
   const double drag = kRestDrag * std::sqrt(s.material.stiffness * sphere_mass(s.material, s.mean_radius));
   return fmt::format(
+      "run 0 post no\n"  // before it, the springs of a restart file are not with their contacts, and no cell may change
       "variable scale equal $(({0}/vol)^(1/3):%.17g)\n"
       "change_box all x scale ${{scale}} y scale ${{scale}} z scale ${{scale}} remap\n"
       "timestep {1}\n"

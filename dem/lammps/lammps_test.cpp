@@ -204,12 +204,12 @@ class LammpsRun {
     if (look != (halt.row ? look_name(here) : halt.keep)) throw Error("LAMMPS's marks are out of order");
     if (halt.row) {
       const Leg& leg = legs_[halt.leg];
+      see(look, halt, &leg);
       at_.segment = static_cast<int>(halt.leg);
       at_.segment_H = leg.drive.H_0;
       at_.segment_steps = halt.step;
-      at_.steps = leg.begin + halt.step;
+      at_.steps = at_.state.step;
       at_.time_step = std::max(at_.time_step, leg.drive.duration / static_cast<double>(leg.steps));
-      see(look, halt, &leg);
       forget(look);
     }
     ++done_;
@@ -232,7 +232,7 @@ class LammpsRun {
     look.row.time = leg ? leg->time + leg->t(halt.step) : 0;
     fill_path(look.row, leg ? leg->drive.segment : test_.segments.empty() ? StraightSegment{} : test_.segments[0],
               static_cast<int>(halt.leg), e, leg ? leg->sheared : 0);
-    look.state.step = at_.steps;
+    look.state.step = leg ? leg->begin + halt.step : 0;
     look.state.time = look.row.time;
     note(look.row);
     at_.rows.push_back(look.row);
