@@ -50,7 +50,8 @@ void add_common(CLI::App& command, Common& common) {
 
 /// Of the commands that run DEM.
 void add_lammps(CLI::App& command, Common& common) {
-  command.add_option("--lammps", common.lammps, "executable of LAMMPS, for \"engine\": \"lammps\"; default: lmp on PATH")
+  command
+      .add_option("--lammps", common.lammps, "executable of LAMMPS, for \"engine\": \"lammps\"; default: lmp on PATH")
       ->envname("GRAINLAW_LAMMPS")
       ->type_name("FILE");
   command

@@ -55,7 +55,8 @@ Forecast forecast_of(const dem::ExpectedCost& cost, double rows, const dem::Prep
   forecast.run_seconds = work / forecast.rate;
   if (like.choice.is_lammps()) {
     forecast.run_seconds *= kLammps;
-    forecast.notes.push_back(fmt::format("LAMMPS is taken to be {:g} times as slow as our engine, without a launcher", kLammps));
+    forecast.notes.push_back(
+        fmt::format("LAMMPS is taken to be {:g} times as slow as our engine, without a launcher", kLammps));
   }
   forecast.fit_seconds = rows * kFittedRow / forecast.rate;
   return forecast;

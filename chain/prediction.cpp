@@ -253,8 +253,8 @@ Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::p
     const fs::path folder = make_subfolder(output, "dem");
     make_output_folder(runs.store);
     dem::RunCounts counts;
-    return dem::run_planned(planned, Json(dem::spec_to_json(runs.spec)), folder,
-                            dem::RunStore(runs.store, "runs"), execution, counts);
+    return dem::run_planned(planned, Json(dem::spec_to_json(runs.spec)), folder, dem::RunStore(runs.store, "runs"),
+                            execution, counts);
   });
 }
 

@@ -32,7 +32,8 @@ std::string pair_coefficients(const DeckSpheres& s) {
   else if (!hertz)
     text += fmt::format(" tangential linear_history {} {} {}", kTangential * k, kTangential, c.friction);
   else
-    text += fmt::format(" tangential mindlin {} {} {}", kTangential * 1.5 * hertz_stiffness(s), kTangential, c.friction);
+    text +=
+        fmt::format(" tangential mindlin {} {} {}", kTangential * 1.5 * hertz_stiffness(s), kTangential, c.friction);
   if (c.rolling_friction > 0)
     text += fmt::format(" rolling sds {} {} {}", kTangential * k, kTangential * gamma, c.rolling_friction);
   return text + " damping velocity\n";

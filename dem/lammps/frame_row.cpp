@@ -12,8 +12,8 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kSameForce = 1e-8;   // of the largest: what rounding may take of a small overlap
-constexpr double kSameRough = 1e-4;   // with friction: LAMMPS turns a tangential spring with its contact a step late
+constexpr double kSameForce = 1e-8;  // of the largest: what rounding may take of a small overlap
+constexpr double kSameRough = 1e-4;  // with friction: LAMMPS turns a tangential spring with its contact a step late
 
 ParticleRequest request_of(const std::filesystem::path& folder, const std::string& name, const DeckSpheres& spheres) {
   ParticleRequest request;
@@ -59,10 +59,11 @@ void weigh(const Frame& frame, const DeckSpheres& spheres, Look& look) {
     if (std::abs(c.force.dot(n) - expected) > off) off = std::abs(c.force.dot(n) - expected), worst = c.line;
   }
   if (!(off <= (spheres.contacts.friction > 0 ? kSameRough : kSameForce) * largest))
-    throw Error(fmt::format(
-        "{}: line {}: LAMMPS's normal force is {:.3g} N off the law that it was asked for, where the largest is {:.3g} N; "
-        "this version does not mean the same by its commands, give one that is known: {}",
-        frame.contacts_source.file.string(), worst, off, largest, kKnownLammps));
+    throw Error(
+        fmt::format("{}: line {}: LAMMPS's normal force is {:.3g} N off the law that it was asked for, where the "
+                    "largest is {:.3g} N; "
+                    "this version does not mean the same by its commands, give one that is known: {}",
+                    frame.contacts_source.file.string(), worst, off, largest, kKnownLammps));
   for (const Eigen::Vector3d& force : net) look.max_net_force = std::max(look.max_net_force, force.norm());
   look.mean_contact_force = touching == 0 ? 0 : sum / static_cast<double>(touching);
 }

@@ -11,12 +11,12 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr const char* kGas = "gas compression";
+constexpr const char* kGas = "gas compression";  // the first word of a stage is the name of its files
 constexpr int kRowsOfGas = 20;
 constexpr std::uint64_t kStepsOfRest = 5000;
-constexpr int kMostRests = 6;    // of so many steps, before a state is flagged
-constexpr double kAtRest = 1e-3;      // max net force over mean contact force
-constexpr double kUntouched = 1e-8;   // or over k <r>: an unjammed packing
+constexpr int kMostRests = 6;        // of so many steps, before a state is flagged
+constexpr double kAtRest = 1e-3;     // max net force over mean contact force
+constexpr double kUntouched = 1e-8;  // or over k <r>: an unjammed packing
 
 /// A packing, and LAMMPS's own file of it in the scratch folder.
 struct Held {
@@ -73,8 +73,8 @@ class LammpsPreparation {
     Packing begin = start.packing;
     if (checkpoint) begin.H = checkpoint->segment_H;
     const double nu = volume_fraction(begin);
-    test.segments = resolve({nu, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to_nu < nu),
-                                                   ExtentKind::target_nu, to_nu}}});
+    test.segments = resolve(
+        {nu, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to_nu < nu), ExtentKind::target_nu, to_nu}}});
     for (Keep& keep : test.keep) keep.e = std::abs(std::log(keep.e / nu)) / 3;  // e was the density
     test.restart = from.restart;
     Checkpointing staged = checkpointing_;
@@ -131,13 +131,15 @@ class LammpsPreparation {
                deck_of_restart(held.restart, true, spheres) + deck_relaxation(volume, kStepsOfRest, dt, spheres) +
                    deck_look(look),
                control_, [](const std::string&) {});
-      Look rested = read_look(place_.folder, look, held.state, spheres, Eigen::Matrix3d::Zero(), Deviator<double>::Zero());
+      Look rested =
+          read_look(place_.folder, look, held.state, spheres, Eigen::Matrix3d::Zero(), Deviator<double>::Zero());
       held = {std::move(rested.state), look + ".restart"};
       relaxation.max_net_force = rested.max_net_force;
       relaxation.mean_contact_force = rested.mean_contact_force;
       relaxation.passes += static_cast<std::int64_t>(kStepsOfRest);
-      relaxation.relaxed = rested.max_net_force <= std::max(kAtRest * rested.mean_contact_force,
-                                                            kUntouched * spheres.material.stiffness * spheres.mean_radius);
+      relaxation.relaxed =
+          rested.max_net_force <=
+          std::max(kAtRest * rested.mean_contact_force, kUntouched * spheres.material.stiffness * spheres.mean_radius);
       for (const char* end : {".spheres", ".contacts"}) std::filesystem::remove(place_.folder / (look + end));
     }
     return relaxation;

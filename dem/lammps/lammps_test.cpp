@@ -26,9 +26,7 @@ struct Leg {
   std::uint64_t steps = 0, begin = 0;  ///< of it; LAMMPS's counter at its start
   double time = 0, sheared = 0;        ///< before it [s], [-]
 
-  double e(std::uint64_t step) const {
-    return step == steps ? drive.segment.length : path_parameter(drive, t(step));
-  }
+  double e(std::uint64_t step) const { return step == steps ? drive.segment.length : path_parameter(drive, t(step)); }
   double t(std::uint64_t step) const { return drive.duration * static_cast<double>(step) / static_cast<double>(steps); }
   /// The first step, at least 1, that reaches this place.
   std::uint64_t reaches(double place) const {
@@ -64,28 +62,22 @@ class LammpsRun {
         spheres_(deck_spheres(start, test.contacts)),
         N_(shear_direction(test.segments)) {}
 
-  /// False where its restart file is gone.
-  bool take_up(Checkpoint& from) {
+  void take_up(Checkpoint from) {
     if (from.segment < 0 || static_cast<std::size_t>(from.segment) >= test_.segments.size() || from.rows.empty())
       throw InvalidInput("the checkpoint is not one of this test; start it anew");
     plan(from.segment_H, static_cast<std::size_t>(from.segment));
     const auto at = std::find_if(halts_.begin(), halts_.end(), [&](const Halt& halt) {
-      return halt.leg == static_cast<std::size_t>(from.segment) && halt.step == from.segment_steps && halt.row;
+      return halt.row && halt.leg == static_cast<std::size_t>(from.segment) && halt.step == from.segment_steps;
     });
-    if (at == halts_.end() || !fs::exists(place_.folder / (look_name(at) + ".restart"))) return false;
-    for (auto kept = halts_.begin(); kept <= at; ++kept) {
-      if (!kept->keep.empty() && !fs::exists(place_.folder / kept->keep)) return false;
-    }
+    if (at == halts_.end()) throw InvalidInput("the checkpoint is not one of this test; start it anew");
     at_ = std::move(from);
     done_ = static_cast<std::size_t>(at - halts_.begin()) + 1;
-    last_ = look_name(at);
+    last_ = look_name(at_.steps);
     saved_names_ = {last_};
     for (const Observation& row : at_.rows) note(row);
-    warnings_.push_back(
-        fmt::format("went on from LAMMPS's restart file at step {}: its digits are not those of a run without a break",
-                    at_.steps));
+    warnings_.push_back(fmt::format(
+        "went on from LAMMPS's restart file at step {}: its digits are not those of a run without a break", at_.steps));
     if (place_.log) place_.log(warnings_.back());
-    return true;
   }
 
   void begin() {
@@ -99,14 +91,14 @@ class LammpsRun {
       try {
         run_deck(place_, test_.name, deck(), control_, [&](const std::string& look) { take(look); });
       } catch (const Error&) {
-        if (at_.segment_steps > 0) save();
+        save_what_there_is();
         throw;
       }
       if (done_ != halts_.size()) throw Error("LAMMPS has ended before the end of the test without saying why");
     }
     LammpsResult result;
     if (!test_.flow) rate_.report(warnings_, "inertial number", test_.options.warn_inertial_number, at_.rows.size());
-    if (!halts_.empty()) result.restart = look_name(halts_.end() - 1) + ".restart";
+    if (!halts_.empty()) result.restart = look_name(at_.steps) + ".restart";
     result.test.steps = at_.steps;
     result.test.time_step = at_.time_step;
     result.test.seconds = at_.seconds + seconds_since(began_);
@@ -117,9 +109,8 @@ class LammpsRun {
   }
 
  private:
-  using HaltPlace = std::vector<Halt>::const_iterator;
-  std::string look_name(HaltPlace halt) const { return fmt::format("{}-{}", test_.name, halt - halts_.begin()); }
-  std::string start_name() const { return test_.name + "-start"; }
+  std::string look_name(std::uint64_t steps) const { return fmt::format("{}-{}", test_.name, steps); }
+  std::uint64_t steps_at(const Halt& halt) const { return legs_[halt.leg].begin + halt.step; }
 
   /// Legs and halts of the path; `H` is the cell at the start of segment `known`.
   void plan(const Eigen::Matrix3d& H, std::size_t known) {
@@ -136,7 +127,8 @@ class LammpsRun {
       if (k == known) H_0 = H;
       const Drive drive = make_drive(segment, test_.options.drive, H_0);
       const double steps = std::max(1.0, std::ceil(drive.duration / dt * (1 - 1e-12)));
-      if (!(steps <= 2e9)) throw InvalidInput("strain_rate: a segment would take more than 2e9 steps; give a larger one");
+      if (!(steps <= 2e9))
+        throw InvalidInput("strain_rate: a segment would take more than 2e9 steps; give a larger one");
       legs_.push_back({drive, static_cast<std::uint64_t>(steps), begin, time, sheared});
       add_halts(k);
       begin += legs_[k].steps;
@@ -167,14 +159,14 @@ class LammpsRun {
   std::string deck() {
     std::string text;
     std::uint64_t at = at_.steps;
-    if (done_ == 0 && test_.restart.empty()) {
-      write_data(place_, start_name() + ".data", start_);
-      text = deck_of_data(start_name() + ".data", spheres_);
+    if (done_ > 0) {
+      text = deck_of_restart(look_name(at) + ".restart", false, spheres_);
     } else {
-      text = deck_of_restart(done_ == 0 ? test_.restart : look_name(halts_.begin() + static_cast<std::ptrdiff_t>(done_) - 1) + ".restart",
-                             done_ == 0, spheres_);
+      const std::string data = test_.name + ".data";
+      if (test_.restart.empty()) write_data(place_, data, start_);
+      text = test_.restart.empty() ? deck_of_data(data, spheres_) : deck_of_restart(test_.restart, true, spheres_);
+      text += deck_look(look_name(0));
     }
-    if (done_ == 0) text += deck_look(start_name());
     for (std::size_t k = 0; k < legs_.size(); ++k) {
       const Leg& leg = legs_[k];
       if (at >= leg.begin + leg.steps) continue;
@@ -183,11 +175,12 @@ class LammpsRun {
       const std::uint64_t fixed = at;
       for (std::size_t h = done_; h < halts_.size(); ++h) {
         if (halts_[h].leg != k) continue;
-        const std::uint64_t to = leg.begin + halts_[h].step;
+        const std::uint64_t to = steps_at(halts_[h]);
         if (to > at) text += deck_run(at, to, fixed, leg.begin + leg.steps);
         at = to;
-        text += halts_[h].row ? deck_look(look_name(halts_.begin() + static_cast<std::ptrdiff_t>(h)))
-                              : fmt::format("write_restart {0}\nprint \"{0}\" append marks screen no\n", halts_[h].keep);
+        text += halts_[h].row
+                    ? deck_look(look_name(to))
+                    : fmt::format("write_restart {0}\nprint \"{0}\" append marks screen no\n", halts_[h].keep);
       }
       text += deck_end_of_drive(cell);
     }
@@ -195,13 +188,9 @@ class LammpsRun {
   }
 
   void take(const std::string& look) {
-    if (look == start_name()) {
-      if (at_.rows.empty()) see(look, {}, nullptr);
-      return;
-    }
+    if (look == look_name(0)) return see(look, {}, nullptr);
     const Halt& halt = halts_.at(done_);
-    const HaltPlace here = halts_.begin() + static_cast<std::ptrdiff_t>(done_);
-    if (look != (halt.row ? look_name(here) : halt.keep)) throw Error("LAMMPS's marks are out of order");
+    if (look != (halt.row ? look_name(steps_at(halt)) : halt.keep)) throw Error("LAMMPS's marks are out of order");
     if (halt.row) {
       const Leg& leg = legs_[halt.leg];
       see(look, halt, &leg);
@@ -214,10 +203,9 @@ class LammpsRun {
     }
     ++done_;
     if (control_.report) {
-      const Leg& leg = legs_[halt.leg];
-      const double steps = static_cast<double>(leg.begin + halt.step);
-      control_.report({"LAMMPS", steps / static_cast<double>(total_), steps * static_cast<double>(start_.packing.size()),
-                       "particle-steps"});
+      const double steps = static_cast<double>(steps_at(halt));
+      control_.report({"LAMMPS", steps / static_cast<double>(total_),
+                       steps * static_cast<double>(start_.packing.size()), "particle-steps"});
     }
   }
 
@@ -230,7 +218,10 @@ class LammpsRun {
       L = path_parameter_rate(legs_[0].drive, 0) * legs_[0].drive.segment.direction.tensor;
     Look look = read_look(place_.folder, name, start_, spheres_, L, N_);
     look.row.time = leg ? leg->time + leg->t(halt.step) : 0;
-    fill_path(look.row, leg ? leg->drive.segment : test_.segments.empty() ? StraightSegment{} : test_.segments[0],
+    fill_path(look.row,
+              leg                      ? leg->drive.segment
+              : test_.segments.empty() ? StraightSegment{}
+                                       : test_.segments[0],
               static_cast<int>(halt.leg), e, leg ? leg->sheared : 0);
     look.state.step = leg ? leg->begin + halt.step : 0;
     look.state.time = look.row.time;
@@ -251,6 +242,15 @@ class LammpsRun {
       fs::remove(place_.folder / (last_ + ".restart"));
     last_ = look;
     if (seconds_since(saved_) >= checkpointing_.interval) save();
+  }
+
+  /// After a failure, whose message is not to be lost.
+  void save_what_there_is() {
+    try {
+      if (at_.segment_steps > 0) save();
+    } catch (const Error& why) {
+      if (place_.log) place_.log(fmt::format("no checkpoint: {}", why.what()));
+    }
   }
 
   void save() {
@@ -305,14 +305,18 @@ LammpsResult run_lammps_test(const LammpsPlace& place, const LammpsTest& test, c
                              std::optional<Checkpoint> from, const RunControl& control,
                              const Checkpointing& checkpointing) {
   check_can_follow(test.segments);
-  if (from) {
-    LammpsRun run(place, test, start, control, checkpointing);
-    if (run.take_up(*from)) return run.run();
-    if (place.log) place.log("starts anew: the restart file of LAMMPS that belongs to the checkpoint is gone");
-  }
   LammpsRun run(place, test, start, control, checkpointing);
-  run.begin();
+  if (from)
+    run.take_up(std::move(*from));
+  else
+    run.begin();
   return run.run();
+}
+
+std::string restart_of(const Checkpoint& checkpoint) {
+  const std::string name =
+      checkpoint.stage.empty() ? kTestName : checkpoint.stage.substr(0, checkpoint.stage.find(' '));
+  return fmt::format("{}-{}.restart", name, checkpoint.steps);
 }
 
 }  // namespace grainlaw::dem

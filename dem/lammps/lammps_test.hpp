@@ -15,7 +15,7 @@ namespace grainlaw::dem {
 
 /// Where LAMMPS works.
 struct LammpsPlace {
-  std::filesystem::path folder;                 ///< scratch files; it exists
+  std::filesystem::path folder;  ///< scratch files; it exists
   LammpsProgram program;
   std::function<void(const std::string&)> log;  ///< may be empty
 };
@@ -51,8 +51,13 @@ struct LammpsResult {
   std::string restart;  ///< of its end; empty without segments
 };
 
-/// Runs the test from `start`, or goes on from a checkpoint of it and the restart file of that row; a checkpoint whose restart
-/// file is gone is not taken. A run that went on is not the uninterrupted one to the last digit, and a warning says so.
+inline constexpr const char* kTestName = "test";  ///< of element tests; stages of a preparation begin with theirs
+
+/// The restart file in the folder without which a checkpoint cannot be taken up.
+std::string restart_of(const Checkpoint& checkpoint);
+
+/// Runs the test from `start`, or goes on from a checkpoint of it (`start` then has its spheres, wherever they are) and the
+/// restart file of that row. A run that went on is not the uninterrupted one to the last digit, and a warning says so.
 LammpsResult run_lammps_test(const LammpsPlace& place, const LammpsTest& test, const State& start,
                              std::optional<Checkpoint> from, const RunControl& control,
                              const Checkpointing& checkpointing);

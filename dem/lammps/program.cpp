@@ -117,8 +117,8 @@ LammpsProgram find_lammps(const std::string& executable, const std::string& laun
   const auto [answer, well] = answer_of({program.executable.string(), "-h"});
   program.version = line_after(answer, "Massively Parallel Simulator - ");
   if (!well || program.version.empty())
-    throw InvalidInput(fmt::format("engine: lammps: '{}' does not say that it is LAMMPS when called with -h; {}", shown,
-                                   kRemedy));
+    throw InvalidInput(
+        fmt::format("engine: lammps: '{}' does not say that it is LAMMPS when called with -h; {}", shown, kRemedy));
   if (answer.find(" GRANULAR ") == std::string::npos && answer.find("\nGRANULAR ") == std::string::npos)
     throw InvalidInput(fmt::format("engine: lammps: '{}' ({}) is built without the package GRANULAR; {}", shown,
                                    program.version, kRemedy));
@@ -166,8 +166,7 @@ bool Process::running() {
 }
 
 std::string Process::how_it_ended() const {
-  if (WIFSIGNALED(status_))
-    return fmt::format("by signal {} ({})", WTERMSIG(status_), strsignal(WTERMSIG(status_)));
+  if (WIFSIGNALED(status_)) return fmt::format("by signal {} ({})", WTERMSIG(status_), strsignal(WTERMSIG(status_)));
   return fmt::format("with exit code {}", WEXITSTATUS(status_));
 }
 

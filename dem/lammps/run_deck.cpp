@@ -66,8 +66,8 @@ void run_deck(const LammpsPlace& place, const std::string& name, const std::stri
   fs::remove(place.folder / kMarks);
   write_durably(place.folder / input, deck);
   std::vector<std::string> words = place.program.launcher;
-  for (const std::string& word : {place.program.executable.string(), std::string("-in"), input, std::string("-log"), log,
-                                  std::string("-screen"), std::string("none"), std::string("-nocite")})
+  for (const std::string& word : {place.program.executable.string(), std::string("-in"), input, std::string("-log"),
+                                  log, std::string("-screen"), std::string("none"), std::string("-nocite")})
     words.push_back(word);
   const fs::path output_file = place.folder / output;
   const int out = open(output_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -90,9 +90,10 @@ void run_deck(const LammpsPlace& place, const std::string& name, const std::stri
   if (process->succeeded()) return;
   std::vector<std::string> said = last_lines(place.folder / log, 3);
   for (const std::string& line : last_lines(output_file, 2)) said.push_back(line);
-  throw Error(fmt::format("LAMMPS ended {}: {} ({}); the same command goes on from its last restart file, or from the "
-                          "beginning of the stage",
-                          process->how_it_ended(), fmt::join(said, " | "), (place.folder / log).string()));
+  throw Error(
+      fmt::format("LAMMPS ended {}: {} ({}); the same command goes on from its last restart file, or from the "
+                  "beginning of the stage",
+                  process->how_it_ended(), fmt::join(said, " | "), (place.folder / log).string()));
 }
 
 }  // namespace grainlaw::dem

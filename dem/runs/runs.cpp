@@ -98,11 +98,20 @@ constexpr const char* kScratch = ".lammps";
 LammpsPlace lammps_place(const fs::path& run, const ResumePolicy& policy) {
   LammpsPlace place{run / kScratch, find_lammps(policy.lammps, policy.launcher), policy.log};
   if (!place.program.is_known() && place.log)
-    place.log(fmt::format("warning: LAMMPS of {} was not tried with these decks, {} was; each force is held against its law",
-                          place.program.version, kKnownLammps));
+    place.log(
+        fmt::format("warning: LAMMPS of {} was not tried with these decks, {} was; each force is held against its law",
+                    place.program.version, kKnownLammps));
   fs::create_directories(place.folder);
   return place;
 }
+/// Whether LAMMPS can go on from a checkpoint of such a run.
+bool can_go_on(const fs::path& run, const std::optional<Checkpoint>& checkpoint, const EngineChoice& choice,
+               const ResumePolicy& policy) {
+  if (!checkpoint || !choice.is_lammps() || fs::exists(run / kScratch / restart_of(*checkpoint))) return true;
+  if (policy.log) policy.log("starts anew: the restart file of LAMMPS that belongs to the checkpoint is gone");
+  return false;
+}
+
 OrderedJson lammps_provenance(OrderedJson provenance, const std::optional<LammpsPlace>& place) {
   if (place)
     provenance["lammps"] = {{"executable", place->program.executable.string()},
@@ -130,16 +139,15 @@ ElementTest run_by_lammps(const LammpsPlace& place, const RunStore& store, const
                           const ElementTestOptions& options, std::optional<Checkpoint> checkpoint,
                           const RunControl& control, const Checkpointing& checkpointing) {
   LammpsTest asked;
-  asked.name = "test";
+  asked.name = kTestName;
   asked.segments = resolve(test.path);
   asked.options = options;
   asked.contacts = test.preparation.choice.contacts;
   if (!test.given && test.preparation.choice.has_history())
-    asked.restart = fs::absolute(store.folder(preparation_key(test.preparation)) /
-                                 history_file(test.path.branch, test.path.nu));
+    asked.restart =
+        fs::absolute(store.folder(preparation_key(test.preparation)) / history_file(test.path.branch, test.path.nu));
   const State start = checkpoint ? checkpoint->state : start_state(store, test, control);
-  ElementTest done =
-      run_lammps_test(place, asked, start, std::move(checkpoint), control, checkpointing).test;
+  ElementTest done = run_lammps_test(place, asked, start, std::move(checkpoint), control, checkpointing).test;
   fs::remove_all(place.folder);
   return done;
 }
@@ -169,6 +177,7 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
   const CheckpointFiles checkpoints(run, key, policy);
   PreparationFolder folder(run, key);
   auto checkpoint = checkpoints.load();
+  if (!can_go_on(run, checkpoint, options.choice, policy)) checkpoint.reset();
   if (checkpoint && !folder.take_up()) {
     if (policy.log) policy.log("starts anew: what it had yielded before the checkpoint is damaged or missing");
     checkpoint.reset();
@@ -185,13 +194,14 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
   } else {
     prepare(options, folder.sink(), control, checkpoints.checkpointing());
   }
-  store.finish(key, request,
-               {{"kind", "preparation"},
-                {"packing", with_contacts(folder.packing(options.packing), options.choice)},
-                {"states", folder.states()},
-                {"warnings", folder.warnings()},
-                {"cost", fields_to_json(RunCost{0, 0, earlier + stopwatch.seconds()})},
-                {"provenance", lammps_provenance(provenance("preparation", options.engine.threads, stopwatch), place)}});
+  store.finish(
+      key, request,
+      {{"kind", "preparation"},
+       {"packing", with_contacts(folder.packing(options.packing), options.choice)},
+       {"states", folder.states()},
+       {"warnings", folder.warnings()},
+       {"cost", fields_to_json(RunCost{0, 0, earlier + stopwatch.seconds()})},
+       {"provenance", lammps_provenance(provenance("preparation", options.engine.threads, stopwatch), place)}});
   return store.find(key).value();
 }
 
@@ -214,6 +224,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   std::optional<PathFrames> frames;
   if (test.frames > 0) frames.emplace(folder, test.frames, segments, key);
   auto checkpoint = checkpoints.load();
+  if (!can_go_on(folder, checkpoint, o.choice, policy)) checkpoint.reset();
   if (checkpoint && frames && !frames->take_up()) {
     if (policy.log) policy.log("starts anew: a frame that was kept before the checkpoint is damaged");
     checkpoint.reset();
@@ -236,9 +247,9 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   const ElementTest done =
       place ? run_by_lammps(*place, store, test, options, std::move(checkpoint), control, checkpoints.checkpointing())
       : checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
-                                         checkpoints.checkpointing())
-                 : run_element_test(start_state(store, test, control), segments, options, control, on_step,
-                                    checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
+                                           checkpoints.checkpointing())
+                   : run_element_test(start_state(store, test, control), segments, options, control, on_step,
+                                      checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
   write_series(folder / "series.csv", done.rows);
   std::vector<std::string> warnings = done.warnings;
   if (probes) {

@@ -192,7 +192,8 @@ void refuse_keys_of_other_engine(const Json& document, const EngineChoice& choic
   if (!choice.is_lammps()) return;
   for (const char* key : kOurEngineAlone) {
     if (document.contains(key))
-      throw InvalidInput(fmt::format("{}: {}: belongs to the engine 'grainlaw'; remove it, LAMMPS has its own", name, key));
+      throw InvalidInput(
+          fmt::format("{}: {}: belongs to the engine 'grainlaw'; remove it, LAMMPS has its own", name, key));
   }
 }
 

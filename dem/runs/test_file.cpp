@@ -86,7 +86,8 @@ void check_given(const State& given, const PreparationOptions& options, bool rel
     if (options.choice.is_lammps() && !given.packing.H.isDiagonal(0))
       throw InvalidInput("cell: is sheared; LAMMPS is given upright cells only");
     if (relaxed && options.choice.contacts.normal_force != NormalForce::hooke)
-      throw InvalidInput("relax: is done by k delta, not by the normal_force that is asked for; relax the spheres before");
+      throw InvalidInput(
+          "relax: is done by k delta, not by the normal_force that is asked for; relax the spheres before");
     check(given.material);
     check_sizes(given.packing);
     check_time_step(engine.time_step_fraction, given.material, lightest_pair(given.packing));
