@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+constexpr double kSameCell = 1e-10;  // relative
+
 double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
 /// A segment as LAMMPS takes it.
@@ -217,6 +219,13 @@ class LammpsRun {
     else if (!legs_.empty())
       L = path_parameter_rate(legs_[0].drive, 0) * legs_[0].drive.segment.direction.tensor;
     Look look = read_look(place_.folder, name, start_, spheres_, L, N_);
+    if (leg) {
+      const Eigen::Matrix3d H = stretch_of(leg->drive.segment, e).asDiagonal() * leg->drive.H_0;
+      if (!((look.state.packing.H - H).norm() <= kSameCell * H.norm()))
+        throw Error(
+            fmt::format("{}: LAMMPS's cell is not where the path leads at step {}; give a version that is known: {}",
+                        name, steps_at(halt), kKnownLammps));
+    }
     look.row.time = leg ? leg->time + leg->t(halt.step) : 0;
     fill_path(look.row,
               leg                      ? leg->drive.segment
