@@ -78,10 +78,14 @@ before=$(find rough/runs -name run.json -printf '%p %T@\n' | sort)
 [[ $(find rough/runs -name run.json -printf '%p %T@\n' | sort) == "$before" ]] || fail "finished runs were repeated"
 
 # --- other normal forces: each force is held against its law while it is read
-echo "{\"state\": \"$state\", \"engine\": \"lammps\", \"normal_force\": \"hertz\", \"cohesion\": 5, \"friction\": 0.2, \"rows\": 5,
-  \"strain_rate\": 5000, \"segments\": [{\"mode\": \"ISO\", \"extent\": {\"target_nu\": 0.80}}]}" >sticky.json
+echo "{\"state\": \"$state\", \"engine\": \"lammps\", \"normal_force\": \"hertz\", \"cohesion\": 5000, \"rows\": 5,
+  \"strain_rate\": 5000, \"segments\": [{\"mode\": \"ISO\", \"extent\": {\"target_nu\": 0.80}}]}" >sticky.json  # pulls with 5 % of a force
 "$grainlaw" simulate sticky.json -o sticky --quiet >/dev/null
-jq -e '.packing.normal_force == "hertz" and .packing.cohesion == 5' sticky/simulation.json >/dev/null || fail "$(jq .packing sticky/simulation.json)"
+jq -e '.packing.normal_force == "hertz" and .packing.cohesion == 5000' sticky/simulation.json >/dev/null || fail "$(jq .packing sticky/simulation.json)"
+jq 'del(.cohesion) | .friction = 0.2' sticky.json >hertz.json
+"$grainlaw" simulate hertz.json -o hertz --quiet >/dev/null
+awk -v a="$(column sticky/series.csv P_star 1)" -v b="$(column hertz/series.csv P_star 1)" 'BEGIN { exit !(a < 0.97 * b && a > 0.5 * b) }' \
+  || fail "P* with and without cohesion: $(column sticky/series.csv P_star 1), $(column hertz/series.csv P_star 1)"
 # a LAMMPS that means something else by its commands (here: twice the stiffness) is found out
 cat >liar <<'SH'
 #!/usr/bin/env bash
@@ -145,6 +149,12 @@ code=0
 wait $pid || code=$?
 [[ $code == 130 ]] || fail "SIGINT: exit code $code, $(cat log)"
 ! kill -0 $lmp_pid 2>/dev/null || fail "LAMMPS lives on"
+"$grainlaw" simulate long.json -o killed --quiet >/dev/null 2>&1 & pid=$!
+for ((i = 0; i < 300; ++i)); do (( $(cat killed/runs/*/.lammps/marks 2>/dev/null | wc -l) >= 2 )) && break; sleep 0.02; done
+lmp_pid=$(ps -o pid= --ppid $pid | tr -d ' ')
+kill -9 $pid
+for ((i = 0; i < 100; ++i)); do kill -0 $lmp_pid 2>/dev/null || break; sleep 0.05; done
+! kill -0 $lmp_pid 2>/dev/null || fail "LAMMPS outlives the death of its parent"
 "$grainlaw" simulate long.json -o stopped 2>log >/dev/null || fail "after SIGINT: $(cat log)"
 grep -q "went on from LAMMPS's restart file" log || fail "did not go on: $(cat log)"
 (( $(wc -l <stopped/series.csv) == 42 )) || fail "rows after SIGINT"
