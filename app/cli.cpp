@@ -52,12 +52,10 @@ void add_common(CLI::App& command, Common& common) {
 void add_lammps(CLI::App& command, Common& common) {
   command
       .add_option("--lammps", common.lammps, "executable of LAMMPS, for \"engine\": \"lammps\"; default: lmp on PATH")
-      ->envname("GRAINLAW_LAMMPS")
       ->type_name("FILE");
   command
       .add_option("--launcher", common.launcher,
                   "words before it, parted by blanks, as \"mpirun -n 2\"; each run of --threads N starts them")
-      ->envname("GRAINLAW_LAUNCHER")
       ->type_name("WORDS");
 }
 void add_checkpoints(CLI::App& command, Common& common) {

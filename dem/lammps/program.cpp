@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -35,11 +35,20 @@ bool is_executable(const fs::path& file) {
   return fs::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
 }
 
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+std::string first_of(std::initializer_list<std::string> texts) {
+  const auto given = std::find_if(texts.begin(), texts.end(), [](const std::string& text) { return !text.empty(); });
+  return given == texts.end() ? "" : *given;
+}
+
 /// Absolute; empty when there is none.
 fs::path on_path(const std::string& name) {
   if (name.find('/') != std::string::npos) return is_executable(name) ? fs::absolute(name) : fs::path();
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
+  std::istringstream folders(variable("PATH"));
   for (std::string folder; std::getline(folders, folder, ':');) {
     if (const fs::path file = fs::path(folder) / name; is_executable(file)) return fs::absolute(file);
   }
@@ -102,14 +111,14 @@ void become(char* const* words, char* const* environment, const char* folder, in
 }  // namespace
 
 LammpsProgram find_lammps(const std::string& executable, const std::string& launcher) {
-  const std::string name = executable.empty() ? "lmp" : executable;
+  const std::string name = first_of({executable, variable("GRAINLAW_LAMMPS"), "lmp"});
   const std::string shown = one_line(name, 200);
   LammpsProgram program;
   program.executable = on_path(name);
   if (program.executable.empty())
     throw InvalidInput(fmt::format("engine: lammps: no executable '{}'{}; {}", shown,
                                    name.find('/') == std::string::npos ? " on PATH" : "", kRemedy));
-  std::istringstream words(launcher);
+  std::istringstream words(first_of({launcher, variable("GRAINLAW_LAUNCHER")}));
   for (std::string word; words >> word;) program.launcher.push_back(word);
   if (!program.launcher.empty() && on_path(program.launcher[0]).empty())
     throw InvalidInput(fmt::format("--launcher: no executable '{}'; give words as \"mpirun -n 2\", without a shell",

@@ -20,8 +20,9 @@ struct LammpsProgram {
   bool is_known() const { return version.starts_with(kKnownLammps); }
 };
 
-/// `executable`: a file or a name on PATH, empty: lmp; `launcher`: words parted by blanks. Throws InvalidInput naming both and
-/// the remedy when one is not there, is no LAMMPS, or lacks the package GRANULAR.
+/// `executable`: a file or a name on PATH, empty: $GRAINLAW_LAMMPS, else lmp; `launcher`: words parted by blanks, empty:
+/// $GRAINLAW_LAUNCHER. Throws InvalidInput naming both and the remedy when one is not there, is no LAMMPS, or lacks the
+/// package GRANULAR.
 LammpsProgram find_lammps(const std::string& executable, const std::string& launcher);
 
 /// A child process with a group of its own, so that Ctrl-C reaches it through us alone. It ends with this object, and by
