@@ -203,7 +203,6 @@ OrderedJson spec_to_json(const Spec& spec) {
     for (const char* key : kOurEngineAlone) object.erase(key);
   } else {
     for_each_field<ContactModel>([&](const auto& field) { object.erase(field.name); });
-    object.erase("engine");
   }
   OrderedJson& tests = object["tests"] = OrderedJson::array();
   for (const TestRequest& test : spec.tests) tests.push_back(test_to_json(test));
