@@ -42,7 +42,7 @@ lammps_curves() {
     cp "$lammps_out/same/$seed/series.csv" "$lammps_out/same/D2-0.72-s$seed.csv"
   done
   figure lammps.first_row.stress "$(awk -F, 'FNR == 1 { for (i = 1; i <= NF; ++i) if ($i ~ /^stress_[xyz][xyz]\[/) c[i] }
-    FNR == 2 { for (i in c) if (NR == 2) a[i] = $i; else { d += ($i - a[i])^2; n += a[i]^2 } } END { print n > 0 ? sqrt(d / n) : "missing" }' \
+    FNR == 2 { for (i in c) if (NR == 2) a[i] = $i; else { d += ($i - a[i])^2; n += a[i]^2 } } END { print (n > 0 ? sqrt(d / n) : "missing") }' \
     <(lammps_double 1) "$lammps_out/same/D2-0.72-s1.csv")" "<=1e-12"
   for quantity in P_star s_par F_par C_star; do
     figure "lammps.same_packings.$quantity" "$(lammps_distance $quantity "$lammps_out/grainlaw/dataset" "$lammps_out/same" || echo missing)" "<=2"
@@ -50,9 +50,9 @@ lammps_curves() {
   done
 }
 
-# First rows of packing SEED by our engine in double precision (mixed rounds positions to 32 bits).
+# First rows of packing SEED by our engine in double precision (mixed rounds positions to 32 bits), of a cell that begins at rest.
 lammps_double() {
-  jq 'del(.engine) | .precision = "double" | .segments[0].extent.eps_dev = 0.001' "$lammps_out/same/$1.json" >"$lammps_out/same/$1-double.json"
+  jq 'del(.engine) | .precision = "double" | .driving = "cosine" | .segments[0].extent.eps_dev = 0.001' "$lammps_out/same/$1.json" >"$lammps_out/same/$1-double.json"
   "$bin/grainlaw" simulate "$lammps_out/same/$1-double.json" -o "$lammps_out/same/$1-double" --quiet >/dev/null
   cat "$lammps_out/same/$1-double/series.csv"
 }
@@ -89,7 +89,7 @@ lammps_seconds() {
   folder=$(mktemp -d "$lammps_out/time.XXXXXX")
   # D2 at a constant rate of 276 1/s; a step takes 1.4e-7 s or so at a fifth of the shortest collision
   jq -n --arg engine "$1" --arg spheres "$spheres.csv" --slurpfile cell "$spheres.cell.json" --argjson steps "$5" '{engine: $engine, spheres: $spheres,
-    cell: $cell[0], strain_rate: 276, rows: 1, driving: "constant", segments: [{mode: "D2", extent: {eps_dev: (1.6e-5 * $steps)}}]}' >"$folder/test.json"
+    cell: $cell[0], strain_rate: 276, rows: 2, driving: "constant", segments: [{mode: "D2", extent: {eps_dev: (1.6e-5 * $steps)}}]}' >"$folder/test.json"
   "$bin/grainlaw" simulate "$folder/test.json" -o "$folder/out" --threads 1 --launcher "$2" --quiet >/dev/null
   jq -r '"\(.cost.seconds) \(.cost.steps)"' "$folder/out/simulation.json"
   rm -rf "$folder"
@@ -97,8 +97,10 @@ lammps_seconds() {
 
 # lammps_time ENGINE LAUNCHER PARTICLES TILES STEPS: ns per step and particle, from runs of so many and of three times as many steps.
 lammps_time() {
-  paste -d' ' <(lammps_seconds "$1" "$2" "$3" "$4" "$5") <(lammps_seconds "$1" "$2" "$3" "$4" $((3 * $5))) |
-    awk -v N=$(($3 * $4 * $4 * $4)) '{ printf "%.4g", ($3 - $1) / ($4 - $2) / N * 1e9 }'
+  local short long
+  short=$(lammps_seconds "$1" "$2" "$3" "$4" "$5")
+  long=$(lammps_seconds "$1" "$2" "$3" "$4" $((3 * $5)))
+  echo "$short $long" | awk -v N=$(($3 * $4 * $4 * $4)) '{ printf "%.4g", ($3 - $1) / ($4 - $2) / N * 1e9 }'
 }
 
 lammps_times() {
@@ -122,7 +124,7 @@ lammps_friction() {
     figure "lammps.friction.jamming.mu$mu" "$(jq -r '.parameters["pressure.nu_c"].value // "missing"' "$lammps_out/friction/mu$mu/parameters.json")" stated
     figure "lammps.friction.largest_s.mu$mu" "$(for file in "$lammps_out/friction/mu$mu"/dataset/D2-0.7[0-9]-s*.csv; do
       awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "s_par") c = i; next } $c > most { most = $c } END { print most }' "$file"; done |
-      awk '{ sum += $1 } END { print NR > 0 ? sum / NR : "missing" }')" stated
+      awk '{ sum += $1 } END { print (NR > 0 ? sum / NR : "missing") }')" stated
   done
   figure lammps.friction.jamming_falls "$(jq -s '[.[].parameters["pressure.nu_c"].value] | (.[0] - .[2]) * 1000 | round / 1000' \
     "$lammps_out"/friction/mu{0,0.01,0.1}/parameters.json)" ">=0.01"
