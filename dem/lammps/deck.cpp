@@ -46,6 +46,8 @@ std::string head(const std::string& read, const DeckSpheres& s) {
          fmt::format("fix motion all nve/sphere\nfix drag all viscous {}\n", s.material.background_viscosity) +
          "compute pair all property/local patom1 patom2 cutoff radius\n"
          "compute contact all pair/local fx fy fz p1 p2 p3 p10 p11 p12 cutoff radius\n"
+         "compute sigma all pressure NULL virial\n"
+         "thermo_style custom step c_sigma[1] c_sigma[2] c_sigma[3]\n"
          "thermo_modify lost error\nthermo 0\n";
 }
 
@@ -109,8 +111,12 @@ std::string deck_look(const std::string& name) {
       "undump spheres\n"
       "undump contacts\n"
       "write_restart {0}.restart\n"
-      "print \"{0}\" append marks screen no\n",
+      "print \"{0} $(c_sigma[1]:%.17g) $(c_sigma[2]:%.17g) $(c_sigma[3]:%.17g)\" append marks screen no\n",
       name);
+}
+
+std::string deck_keep(const std::string& file) {
+  return fmt::format("run 0 post no\nwrite_restart {0}\nprint \"{0}\" append marks screen no\n", file);
 }
 
 std::string deck_relaxation(double volume, std::uint64_t steps, double time_step, const DeckSpheres& s) {

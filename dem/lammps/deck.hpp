@@ -42,8 +42,13 @@ std::string deck_end_of_drive(const std::string& name);
 /// Goes on from one of LAMMPS's steps to another; `fixed` is where deck_drive() stands, `end` where the segment ends.
 std::string deck_run(std::uint64_t from, std::uint64_t to, std::uint64_t fixed, std::uint64_t end);
 
-/// Writes NAME.spheres, NAME.contacts and NAME.restart of this instant, then a line NAME to the file `marks`.
+/// Writes NAME.spheres, NAME.contacts and NAME.restart of this instant, then a line to the file `marks`: NAME and LAMMPS's own
+/// contact stress, xx, yy, zz [Pa].
 std::string deck_look(const std::string& name);
+
+/// Writes a restart file, then its name to `marks`. As a look it begins with `run 0`: a restart file has the springs of the last
+/// neighbour list, and one that is written without a new list mixes up those across the faces of the cell from then on.
+std::string deck_keep(const std::string& file);
 
 /// Scales the cell to this volume [m^3], lets strong drag bring the spheres to rest for `steps`, and stops them.
 std::string deck_relaxation(double volume, std::uint64_t steps, double time_step, const DeckSpheres& spheres);

@@ -38,7 +38,7 @@ struct Keep {
 
 struct LammpsTest {
   std::string name;     ///< letters; of its files, other than those of tests before it in the same folder
-  std::string restart;  ///< restart file to start from, in the folder or absolute; empty: the state alone
+  std::string restart;  ///< restart file in the folder to start from; empty: the state alone
   std::vector<StraightSegment> segments;
   ElementTestOptions options;
   ContactModel contacts;

@@ -143,9 +143,11 @@ ElementTest run_by_lammps(const LammpsPlace& place, const RunStore& store, const
   asked.segments = resolve(test.path);
   asked.options = options;
   asked.contacts = test.preparation.choice.contacts;
-  if (!test.given && test.preparation.choice.has_history())
-    asked.restart =
-        fs::absolute(store.folder(preparation_key(test.preparation)) / history_file(test.path.branch, test.path.nu));
+  if (!test.given && !checkpoint && test.preparation.choice.has_history()) {
+    asked.restart = "start.restart";  // a copy: words in a deck end at blanks
+    copy_durably(store.folder(preparation_key(test.preparation)) / history_file(test.path.branch, test.path.nu),
+                 place.folder / asked.restart);
+  }
   const State start = checkpoint ? checkpoint->state : start_state(store, test, control);
   ElementTest done = run_lammps_test(place, asked, start, std::move(checkpoint), control, checkpointing).test;
   fs::remove_all(place.folder);
