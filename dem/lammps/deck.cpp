@@ -108,10 +108,11 @@ std::string deck_look(const std::string& name) {
       "c_contact[5] c_contact[6] c_contact[7] c_contact[8] c_contact[9]\n"
       "dump_modify contacts first yes format float %.17g\n"
       "run 0 post no\n"
+      "variable sigma string \"$(c_sigma[1]:%.17g) $(c_sigma[2]:%.17g) $(c_sigma[3]:%.17g)\"\n"
       "undump spheres\n"
       "undump contacts\n"
       "write_restart {0}.restart\n"
-      "print \"{0} $(c_sigma[1]:%.17g) $(c_sigma[2]:%.17g) $(c_sigma[3]:%.17g)\" append marks screen no\n",
+      "print \"{0} ${{sigma}}\" append marks screen no\n",
       name);
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "dem/engine/averages.hpp"
 #include "dem/foreign/frame.hpp"
@@ -12,8 +13,10 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kSameForce = 1e-8;  // of the largest: what rounding may take of a small overlap
-constexpr double kSameRough = 1e-4;  // with friction: LAMMPS turns a tangential spring with its contact a step late
+constexpr double kSameForce = 1e-8;   // of the largest: what rounding may take of a small overlap
+constexpr double kSameStress = 1e-6;  // of the contacts that are listed and of all forces
+constexpr double kNoStress = 1e-12;   // of k/<r>
+constexpr double kSameRough = 1e-4;   // with friction: LAMMPS turns a tangential spring with its contact a step late
 
 ParticleRequest request_of(const std::filesystem::path& folder, const std::string& name, const DeckSpheres& spheres) {
   ParticleRequest request;
@@ -70,8 +73,12 @@ void weigh(const Frame& frame, const DeckSpheres& spheres, Look& look) {
 
 }  // namespace
 
-Look read_look(const std::filesystem::path& folder, const std::string& name, const State& like,
+Look read_look(const std::filesystem::path& folder, const std::string& mark, const State& like,
                const DeckSpheres& spheres, const Eigen::Matrix3d& L, const Deviator<double>& N) {
+  std::istringstream words(mark);
+  std::string name;
+  Eigen::Vector3d stress;
+  words >> name >> stress[0] >> stress[1] >> stress[2];
   Frame frame;
   Look look;
   try {
@@ -85,6 +92,14 @@ Look read_look(const std::filesystem::path& folder, const std::string& name, con
     const bool may_pull = spheres.contacts.cohesion > 0;
     set_averages(look.row, sum_given(frame.packing, frame.contacts, may_pull).sums, frame.packing,
                  spheres.material.stiffness, N, false);
+    const Eigen::Vector3d off = look.row.stress.tensor.diagonal() - stress;
+    const double unit = spheres.material.stiffness / spheres.mean_radius;
+    if (!words || !(off.norm() <= kSameStress * stress.norm() + kNoStress * unit))
+      throw Error(
+          fmt::format("{}: the contacts that LAMMPS lists make a stress that is {:.3g} of its own off it: the "
+                      "springs are mixed up",
+                      request.contacts->files[0].string(), off.norm() / stress.norm()));
+    for (const char* end : {".spheres", ".contacts"}) std::filesystem::remove(folder / (name + end));
   } catch (const InvalidInput& error) {
     throw Error(fmt::format("what LAMMPS has written cannot be read; is the disk full? {}", error.what()));
   }

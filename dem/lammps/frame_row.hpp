@@ -19,9 +19,10 @@ struct Look {
   double mean_contact_force = 0;  ///< [N], 0 without contacts
 };
 
-/// Reads folder/NAME.spheres and NAME.contacts. `L`: velocity gradient of the cell, for the inertial number alone [1/s]; `N`:
-/// direction for s_par and F_par. Throws Error naming the file for what is cut off, and for forces that are of another law.
-Look read_look(const std::filesystem::path& folder, const std::string& name, const State& like,
+/// Reads the files of a look in `folder`, by its line of `marks`, and removes them. `L`: velocity gradient of the cell, for the
+/// inertial number alone [1/s]; `N`: direction for s_par and F_par. Throws Error naming the file for what is cut off, for
+/// forces that are of another law, and for contacts that do not make the stress that LAMMPS itself has.
+Look read_look(const std::filesystem::path& folder, const std::string& mark, const State& like,
                const DeckSpheres& spheres, const Eigen::Matrix3d& L, const Deviator<double>& N);
 
 }  // namespace grainlaw::dem

@@ -110,7 +110,7 @@ class LammpsPreparation {
     for (std::size_t i = 0; i < densities.size(); ++i) {
       if (sink_.has && sink_.has(which, densities[i])) continue;
       Held copy{held.state, test.keep[i].file};
-      KeptState kept{which, densities[i], {}, bring_to_rest(copy, densities[i], fmt::format("kept-{}", i)), {}};
+      KeptState kept{which, densities[i], {}, bring_to_rest(copy, densities[i], fmt::format("{}-{}", name, i)), {}};
       kept.state = std::move(copy.state);
       if (options_.choice.has_history()) kept.history = place_.folder / copy.restart;
       sink_.keep(kept);
@@ -125,22 +125,27 @@ class LammpsPreparation {
     const DeckSpheres spheres = deck_spheres(held.state, options_.choice.contacts);
     const double volume = solid_volume(held.state.packing) / nu;
     const double dt = options_.engine.time_step_fraction * min_collision_time(held.state.packing, held.state.material);
+    std::string mark;
     for (int i = 0; i < kMostRests && !relaxation.relaxed; ++i) {
-      const std::string look = fmt::format("rest-{}-{}", name, i);
+      const std::string look = fmt::format("rest-{}-{}", name, i), rested_file = look + ".rested";
+      if (i + 1 < kMostRests && std::filesystem::exists(place_.folder / rested_file)) {  // of an earlier session
+        held.restart = rested_file;
+        continue;
+      }
       run_deck(place_, "rest",
                deck_of_restart(held.restart, true, spheres) + deck_relaxation(volume, kStepsOfRest, dt, spheres) +
                    deck_look(look),
-               control_, [](const std::string&) {});
+               control_, [&](const std::string& line) { mark = line; });
       Look rested =
-          read_look(place_.folder, look, held.state, spheres, Eigen::Matrix3d::Zero(), Deviator<double>::Zero());
-      held = {std::move(rested.state), look + ".restart"};
+          read_look(place_.folder, mark, held.state, spheres, Eigen::Matrix3d::Zero(), Deviator<double>::Zero());
+      std::filesystem::rename(place_.folder / (look + ".restart"), place_.folder / rested_file);
+      held = {std::move(rested.state), rested_file};
       relaxation.max_net_force = rested.max_net_force;
       relaxation.mean_contact_force = rested.mean_contact_force;
-      relaxation.passes += static_cast<std::int64_t>(kStepsOfRest);
+      relaxation.passes = static_cast<std::int64_t>(kStepsOfRest) * (i + 1);
       relaxation.relaxed =
           rested.max_net_force <=
           std::max(kAtRest * rested.mean_contact_force, kUntouched * spheres.material.stiffness * spheres.mean_radius);
-      for (const char* end : {".spheres", ".contacts"}) std::filesystem::remove(place_.folder / (look + end));
     }
     return relaxation;
   }

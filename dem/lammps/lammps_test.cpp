@@ -78,7 +78,8 @@ class LammpsRun {
     saved_names_ = {last_};
     for (const Observation& row : at_.rows) note(row);
     warnings_.push_back(fmt::format(
-        "went on from LAMMPS's restart file at step {}: its digits are not those of a run without a break", at_.steps));
+        "went on from LAMMPS's restart file at step {}: its last digits need not be those of a run without a break",
+        at_.steps));
     if (place_.log) place_.log(warnings_.back());
   }
 
@@ -180,22 +181,21 @@ class LammpsRun {
         const std::uint64_t to = steps_at(halts_[h]);
         if (to > at) text += deck_run(at, to, fixed, leg.begin + leg.steps);
         at = to;
-        text += halts_[h].row
-                    ? deck_look(look_name(to))
-                    : fmt::format("write_restart {0}\nprint \"{0}\" append marks screen no\n", halts_[h].keep);
+        text += halts_[h].row ? deck_look(look_name(to)) : deck_keep(halts_[h].keep);
       }
       text += deck_end_of_drive(cell);
     }
     return text;
   }
 
-  void take(const std::string& look) {
-    if (look == look_name(0)) return see(look, {}, nullptr);
+  void take(const std::string& mark) {
+    const std::string look = mark.substr(0, mark.find(' '));
+    if (look == look_name(0)) return see(mark, {}, nullptr);
     const Halt& halt = halts_.at(done_);
     if (look != (halt.row ? look_name(steps_at(halt)) : halt.keep)) throw Error("LAMMPS's marks are out of order");
     if (halt.row) {
       const Leg& leg = legs_[halt.leg];
-      see(look, halt, &leg);
+      see(mark, halt, &leg);
       at_.segment = static_cast<int>(halt.leg);
       at_.segment_H = leg.drive.H_0;
       at_.segment_steps = halt.step;
@@ -211,20 +211,20 @@ class LammpsRun {
     }
   }
 
-  void see(const std::string& name, const Halt& halt, const Leg* leg) {
+  void see(const std::string& mark, const Halt& halt, const Leg* leg) {
     const double e = leg ? leg->e(halt.step) : 0;
     Eigen::Matrix3d L = Eigen::Matrix3d::Zero();
     if (leg)
       L = path_parameter_rate(leg->drive, leg->t(halt.step)) * leg->drive.segment.direction.tensor;
     else if (!legs_.empty())
       L = path_parameter_rate(legs_[0].drive, 0) * legs_[0].drive.segment.direction.tensor;
-    Look look = read_look(place_.folder, name, start_, spheres_, L, N_);
+    Look look = read_look(place_.folder, mark, start_, spheres_, L, N_);
     if (leg) {
       const Eigen::Matrix3d H = stretch_of(leg->drive.segment, e).asDiagonal() * leg->drive.H_0;
       if (!((look.state.packing.H - H).norm() <= kSameCell * H.norm()))
         throw Error(
             fmt::format("{}: LAMMPS's cell is not where the path leads at step {}; give a version that is known: {}",
-                        name, steps_at(halt), kKnownLammps));
+                        test_.name, steps_at(halt), kKnownLammps));
     }
     look.row.time = leg ? leg->time + leg->t(halt.step) : 0;
     fill_path(look.row,
@@ -237,7 +237,6 @@ class LammpsRun {
     note(look.row);
     at_.rows.push_back(look.row);
     at_.state = std::move(look.state);
-    for (const char* end : {".spheres", ".contacts"}) fs::remove(place_.folder / (name + end));
   }
 
   void note(const Observation& row) {
