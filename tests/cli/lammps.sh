@@ -77,6 +77,12 @@ before=$(find rough/runs -name run.json -printf '%p %T@\n' | sort)
 "$grainlaw" simulate rough.json -o rough --quiet --lammps ./nowhere/lmp >/dev/null || fail "finished runs need no LAMMPS"
 [[ $(find rough/runs -name run.json -printf '%p %T@\n' | sort) == "$before" ]] || fail "finished runs were repeated"
 
+# springs survive the restart files on the way: states that are kept come to rest, which they do not where springs are mixed up
+echo "{\"engine\": \"lammps\", \"friction\": 0.3, \"particles\": 200, \"seed\": 5, \"strain_rate\": 1500, \"rows\": 10, \"nu_end\": 0.66,
+  \"keep\": [{\"nu\": 0.7}, {\"nu\": 0.75}, {\"nu\": 0.68, \"branch\": \"loading\"}, {\"nu\": 0.8, \"branch\": \"loading\"}]}" >keep.json
+"$grainlaw" simulate keep.json -o "ke ep" --quiet >/dev/null
+jq -e '[.states[].relaxation.relaxed] == [true, true, true, true]' "ke ep/simulation.json" >/dev/null || fail "$(jq -c .states "ke ep/simulation.json")"
+
 # --- other normal forces: each force is held against its law while it is read
 echo "{\"state\": \"$state\", \"engine\": \"lammps\", \"normal_force\": \"hertz\", \"cohesion\": 5000, \"rows\": 5,
   \"strain_rate\": 5000, \"segments\": [{\"mode\": \"ISO\", \"extent\": {\"target_nu\": 0.80}}]}" >sticky.json  # pulls with 5 % of a force
@@ -153,6 +159,7 @@ wait $pid || code=$?
 for ((i = 0; i < 300; ++i)); do (( $(cat killed/runs/*/.lammps/marks 2>/dev/null | wc -l) >= 2 )) && break; sleep 0.02; done
 lmp_pid=$(ps -o pid= --ppid $pid | tr -d ' ')
 kill -9 $pid
+wait $pid 2>/dev/null || true
 for ((i = 0; i < 100; ++i)); do kill -0 $lmp_pid 2>/dev/null || break; sleep 0.05; done
 ! kill -0 $lmp_pid 2>/dev/null || fail "LAMMPS outlives the death of its parent"
 "$grainlaw" simulate long.json -o stopped 2>log >/dev/null || fail "after SIGINT: $(cat log)"

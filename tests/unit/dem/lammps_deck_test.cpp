@@ -62,6 +62,7 @@ TEST(LammpsDeck, OnlyEdgesThatMoveAreDriven) {
   EXPECT_TRUE(has(deck_drive("cell", drive_of(Mode::UNI, Profile::constant), 1000, 0),
                   " deform 1 z variable v_dz v_rz remap x"));
   EXPECT_EQ(deck_run(120, 180, 50, 1050), "run 60 start 50 stop 1050 post no\n");
+  EXPECT_TRUE(deck_keep("a").starts_with("run 0 post no\nwrite_restart a\n")) << "else springs are mixed up";
 }
 
 TEST(LammpsDeck, ProcessesEndAndAreTold) {
