@@ -83,10 +83,7 @@ class LammpsRun {
     if (place_.log) place_.log(warnings_.back());
   }
 
-  void begin() {
-    plan(start_.packing.H, 0);
-    at_ = {};
-  }
+  void begin() { plan(start_.packing.H, 0); }
 
   LammpsResult run() {
     const bool anew = done_ == 0;
@@ -115,16 +112,12 @@ class LammpsRun {
   std::string look_name(std::uint64_t steps) const { return fmt::format("{}-{}", test_.name, steps); }
   std::uint64_t steps_at(const Halt& halt) const { return legs_[halt.leg].begin + halt.step; }
 
-  /// Legs and halts of the path; `H` is the cell at the start of segment `known`.
+  /// Legs and halts of the path; `H` is the cell at the start of segment `known`. Of those before it only the lengths count.
   void plan(const Eigen::Matrix3d& H, std::size_t known) {
     const double dt = test_.options.engine.time_step_fraction * min_collision_time(start_.packing, start_.material);
     std::uint64_t begin = 0;
     double time = 0, sheared = 0;
     Eigen::Matrix3d H_0 = H;
-    for (std::size_t k = 0; k < known; ++k) {  // back to the start of the path
-      const StraightSegment& segment = test_.segments[known - 1 - k];
-      H_0 = stretch_of(segment, -segment.length).asDiagonal() * H_0;
-    }
     for (std::size_t k = 0; k < test_.segments.size(); ++k) {
       const StraightSegment& segment = test_.segments[k];
       if (k == known) H_0 = H;
@@ -190,12 +183,12 @@ class LammpsRun {
 
   void take(const std::string& mark) {
     const std::string look = mark.substr(0, mark.find(' '));
-    if (look == look_name(0)) return see(mark, {}, nullptr);
+    if (look == look_name(0)) return see(mark, {});
     const Halt& halt = halts_.at(done_);
     if (look != (halt.row ? look_name(steps_at(halt)) : halt.keep)) throw Error("LAMMPS's marks are out of order");
     if (halt.row) {
       const Leg& leg = legs_[halt.leg];
-      see(mark, halt, &leg);
+      see(mark, halt);
       at_.segment = static_cast<int>(halt.leg);
       at_.segment_H = leg.drive.H_0;
       at_.segment_steps = halt.step;
@@ -211,27 +204,20 @@ class LammpsRun {
     }
   }
 
-  void see(const std::string& mark, const Halt& halt, const Leg* leg) {
-    const double e = leg ? leg->e(halt.step) : 0;
+  /// A row at the place of `halt`, whose mark this is.
+  void see(const std::string& mark, const Halt& halt) {
+    const Leg* leg = legs_.empty() ? nullptr : &legs_[halt.leg];
+    const StraightSegment segment = leg ? leg->drive.segment : StraightSegment{};
+    const double e = leg ? leg->e(halt.step) : 0, t = leg ? leg->t(halt.step) : 0;
     Eigen::Matrix3d L = Eigen::Matrix3d::Zero();
-    if (leg)
-      L = path_parameter_rate(leg->drive, leg->t(halt.step)) * leg->drive.segment.direction.tensor;
-    else if (!legs_.empty())
-      L = path_parameter_rate(legs_[0].drive, 0) * legs_[0].drive.segment.direction.tensor;
+    if (leg) L = path_parameter_rate(leg->drive, t) * segment.direction.tensor;
     Look look = read_look(place_.folder, mark, start_, spheres_, L, N_);
-    if (leg) {
-      const Eigen::Matrix3d H = stretch_of(leg->drive.segment, e).asDiagonal() * leg->drive.H_0;
-      if (!((look.state.packing.H - H).norm() <= kSameCell * H.norm()))
-        throw Error(
-            fmt::format("{}: LAMMPS's cell is not where the path leads at step {}; give a version that is known: {}",
-                        test_.name, steps_at(halt), kKnownLammps));
-    }
-    look.row.time = leg ? leg->time + leg->t(halt.step) : 0;
-    fill_path(look.row,
-              leg                      ? leg->drive.segment
-              : test_.segments.empty() ? StraightSegment{}
-                                       : test_.segments[0],
-              static_cast<int>(halt.leg), e, leg ? leg->sheared : 0);
+    const Eigen::Matrix3d H = leg ? stretch_of(segment, e).asDiagonal() * leg->drive.H_0 : start_.packing.H;
+    if (!((look.state.packing.H - H).norm() <= kSameCell * H.norm()))
+      throw Error(fmt::format("{}: LAMMPS's cell is not where the path leads; give a version that is known: {}", mark,
+                              kKnownLammps));
+    look.row.time = leg ? leg->time + t : 0;
+    fill_path(look.row, segment, static_cast<int>(halt.leg), e, leg ? leg->sheared : 0);
     look.state.step = leg ? leg->begin + halt.step : 0;
     look.state.time = look.row.time;
     note(look.row);
