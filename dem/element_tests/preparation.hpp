@@ -32,8 +32,8 @@ struct PreparationOptions {
 };
 constexpr auto fields_of(std::type_identity<PreparationOptions>) {
   using P = PreparationOptions;
-  return std::tuple{Field{&P::packing, ""}, Field{&P::engine, ""}, Field{&P::drive, ""}, Field{&P::relax, ""}, Field{&P::choice, ""},
-                    Field{&P::rows, "rows", "", "", "rows recorded in each segment"},
+  return std::tuple{Field{&P::packing, ""}, Field{&P::engine, ""}, Field{&P::drive, ""}, Field{&P::relax, ""},
+                    Field{&P::choice, ""}, Field{&P::rows, "rows", "", "", "rows recorded in each segment"},
                     Field{&P::nu_gas, "nu_gas", "", "nu", "volume fraction of the random gas", Rule::fixed},
                     Field{&P::gas_compression_factor, "gas_compression_factor", "", "",
                           "strain rate of the gas compression over strain_rate", Rule::fixed},
@@ -53,10 +53,10 @@ void check(const PreparationOptions& options);
 /// A state kept at a density, relaxed there.
 struct KeptState {
   Branch branch = Branch::unloading;
-  double nu = 0;          ///< requested volume fraction; the state has it to rounding
-  State state;            ///< at rest, cell of exactly this density
-  Relaxation relaxation;  ///< `relaxed` false: flagged, near jamming
-  std::filesystem::path history = {};  ///< restart file of LAMMPS with the springs of its contacts; empty: they have none
+  double nu = 0;                       ///< requested volume fraction; the state has it to rounding
+  State state;                         ///< at rest, cell of exactly this density
+  Relaxation relaxation;               ///< `relaxed` false: flagged, near jamming
+  std::filesystem::path history = {};  ///< restart file of LAMMPS with its contacts' springs; empty: none
 };
 
 /// Receives results as they come, in order of time, so that the caller can save them.
