@@ -36,6 +36,7 @@ struct Common {
   bool quiet = false;
   bool resume = true;
   double checkpoint_interval = 60;
+  std::string lammps, launcher;
 };
 
 void add_common(CLI::App& command, Common& common) {
@@ -48,6 +49,15 @@ void add_common(CLI::App& command, Common& common) {
 }
 
 /// Of the commands that run DEM.
+void add_lammps(CLI::App& command, Common& common) {
+  command
+      .add_option("--lammps", common.lammps, "executable of LAMMPS, for \"engine\": \"lammps\"; default: lmp on PATH")
+      ->type_name("FILE");
+  command
+      .add_option("--launcher", common.launcher,
+                  "words before it, parted by blanks, as \"mpirun -n 2\"; each run of --threads N starts them")
+      ->type_name("WORDS");
+}
 void add_checkpoints(CLI::App& command, Common& common) {
   command.add_flag(
       "--resume,!--no-resume", common.resume,
@@ -93,7 +103,10 @@ constexpr std::array kAboutItself{
 void add(CLI::App& app, const Command& command, Common& common, Task& chosen) {
   CLI::App* added = app.add_subcommand(command.name, command.description);
   const Task task = command.declare(*added);
-  if (command.kind == Kind::simulates) add_checkpoints(*added, common);
+  if (command.kind == Kind::simulates) {
+    add_checkpoints(*added, common);
+    add_lammps(*added, common);
+  }
   if (command.kind != Kind::says) add_common(*added, common);
   added->callback([task, &chosen] { chosen = task; });
 }
@@ -138,7 +151,9 @@ int perform(const Task& task, const Common& common, const std::string& command) 
                      .watch = progress,
                      .resume = common.resume,
                      .checkpoint_interval = common.checkpoint_interval,
-                     .command = command},
+                     .command = command,
+                     .lammps = common.lammps,
+                     .launcher = common.launcher},
                     common.json};
     return static_cast<int>(task(session));
   } catch (const InvalidInput& error) {

@@ -206,6 +206,7 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
     dem::adopt_pictures(input.dataset_folder, folder);
     log_warnings(result.dataset, execution.watch);
   } else {
+    dem::require_engines(plan(*input.spec), output, execution);
     const fs::path folder = output / "dataset";
     result.dataset = without_empty_folders({folder, output}, [&] {
       make_output_folder(output);

@@ -246,13 +246,15 @@ std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const Prediction
 
 Dataset make_runs(const NewRuns& runs, const PredictionInput& input, const fs::path& output,
                   const Execution& execution) {
+  const std::vector<dem::PlannedTest> planned = planned_runs(runs, input);
+  dem::require_engines(planned, runs.store, execution);
   return without_empty_folders({output / "dem", output}, [&] {
     make_output_folder(output);
     const fs::path folder = make_subfolder(output, "dem");
     make_output_folder(runs.store);
     dem::RunCounts counts;
-    return dem::run_planned(planned_runs(runs, input), Json(dem::spec_to_json(runs.spec)), folder,
-                            dem::RunStore(runs.store, "runs"), execution, counts);
+    return dem::run_planned(planned, Json(dem::spec_to_json(runs.spec)), folder, dem::RunStore(runs.store, "runs"),
+                            execution, counts);
   });
 }
 

@@ -72,6 +72,17 @@ std::string list_of(const std::vector<std::string>& words) {
   return fmt::format("{} and {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
 }
 
+/// "frictionless", or what else their contacts know.
+std::string kind_of_spheres(const ReportInput& input) {
+  const ContactModel contacts = input.tests.empty() ? ContactModel{} : input.tests.front().packing.contacts;
+  std::string kind = contacts.cohesion > 0 ? "cohesive " : "";
+  if (contacts.normal_force == NormalForce::hertz) kind += "Hertzian ";
+  if (contacts.friction == 0) return kind + "frictionless spheres";
+  kind += fmt::format("spheres of friction {:g}", contacts.friction);
+  return contacts.rolling_friction > 0 ? kind + fmt::format(" and rolling friction {:g}", contacts.rolling_friction)
+                                       : kind;
+}
+
 Paragraph subject(const ReportInput& input) {
   std::set<std::int64_t> particles;
   std::size_t fitted = 0;
@@ -83,11 +94,10 @@ Paragraph subject(const ReportInput& input) {
   const std::size_t packings = seeds_of(input.tests).size();
   std::string command = fact_of(input, "command", "dataset/dataset.json");
   if (command.empty()) command = fact_of(input, "command", "parameters.json");
-  return {notation(fmt::format(
-              "Calibrated from grains: {} {} of {} frictionless spheres, {} tests fitted, {{ν}} = {:.3g} to "
-              "{:.3g}, deviatoric strain up to {:.3g}",
-              packings, packings == 1 ? "packing" : "packings", fmt::join(particles, " or "), fitted, range.nu_min,
-              range.nu_max, range.eps_dev_max)) +
+  return {notation(fmt::format("Calibrated from grains: {} {} of {} {}, {} tests fitted, {{ν}} = {:.3g} to "
+                               "{:.3g}, deviatoric strain up to {:.3g}",
+                               packings, packings == 1 ? "packing" : "packings", fmt::join(particles, " or "),
+                               kind_of_spheres(input), fitted, range.nu_min, range.nu_max, range.eps_dev_max)) +
           plain(command.empty() ? "." : ", by " + command + ".")};
 }
 
@@ -267,9 +277,10 @@ std::vector<Reservation> reservations(const ReportInput& input, const std::vecto
                    fmt::format("{} of {} published numbers and points of curves differ beyond chance.", differ,
                                input.modes.verdicts.size()),
                    "published"});
-  all.push_back(
-      {3, "Spheres without friction, of one size distribution and at one strain rate: of others nothing is shown.",
-       "quality"});
+  all.push_back({3,
+                 fmt::format("Data of {}, of one size distribution and at one strain rate: of others nothing is shown.",
+                             kind_of_spheres(input)),
+                 "quality"});
   all.push_back(
       {2, "The form of the law, and what of it is fixed by decision, is in no interval of a parameter.", "parameters"});
   all.push_back({1, "The published numbers are of other packings and another preparation.", "published"});

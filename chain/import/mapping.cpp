@@ -68,7 +68,7 @@ PackingInfo packing_from(const Json& json, std::uint64_t place, const std::strin
   PackingInfo packing;
   packing.seed = place;
   read_given_fields(json, packing);
-  packing.friction = json.value("friction", 0.0);
+  read_given_fields(json, packing.contacts);
   const bool parts = json.contains("mean_radius") || json.contains("stiffness");
   const int ways = (parts ? 1 : 0) + (json.contains("stress_unit") ? 1 : 0) + (json.contains("dimensionless") ? 1 : 0);
   if (ways > 1)

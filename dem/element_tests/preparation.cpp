@@ -187,6 +187,7 @@ void check_sink(const PreparationSink& sink) {
 }  // namespace
 
 void check(const PreparationOptions& o) {
+  check(o.choice, o.engine, o.drive);
   const auto refuse = [](const std::string& why) { throw InvalidInput(why); };
   if (o.nu_start >= o.nu_max) refuse(fmt::format("nu_max: {} must lie above nu_start = {}", o.nu_max, o.nu_start));
   if (!(o.nu_gas < o.nu_start && o.nu_start < o.nu_max && o.nu_max <= kMaxVolumeFraction)) {

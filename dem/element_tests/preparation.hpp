@@ -3,11 +3,13 @@
 // isotropic loading to nu_max -> isotropic unloading; states are kept at requested densities on both branches and
 // relaxed. A preparation is a function of its options.
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "dem/element_tests/element_run.hpp"
+#include "dem/element_tests/engine_choice.hpp"
 #include "dem/element_tests/random_gas.hpp"
 #include "dem/statics/relax.hpp"
 
@@ -18,6 +20,7 @@ struct PreparationOptions {
   EngineOptions engine;
   DriveOptions drive;
   RelaxOptions relax;
+  EngineChoice choice;                 ///< what runs the particles, and what their contacts know
   double nu_gas = 0.3;                 ///< volume fraction of the random gas [-]
   double nu_start = 0.64;              ///< end of the gas compression [-]
   double nu_max = 0.82;                ///< end of the loading branch [-]
@@ -30,7 +33,7 @@ struct PreparationOptions {
 constexpr auto fields_of(std::type_identity<PreparationOptions>) {
   using P = PreparationOptions;
   return std::tuple{Field{&P::packing, ""}, Field{&P::engine, ""}, Field{&P::drive, ""}, Field{&P::relax, ""},
-                    Field{&P::rows, "rows", "", "", "rows recorded in each segment"},
+                    Field{&P::choice, ""}, Field{&P::rows, "rows", "", "", "rows recorded in each segment"},
                     Field{&P::nu_gas, "nu_gas", "", "nu", "volume fraction of the random gas", Rule::fixed},
                     Field{&P::gas_compression_factor, "gas_compression_factor", "", "",
                           "strain rate of the gas compression over strain_rate", Rule::fixed},
@@ -50,9 +53,10 @@ void check(const PreparationOptions& options);
 /// A state kept at a density, relaxed there.
 struct KeptState {
   Branch branch = Branch::unloading;
-  double nu = 0;          ///< requested volume fraction; the state has it to rounding
-  State state;            ///< at rest, cell of exactly this density
-  Relaxation relaxation;  ///< `relaxed` false: flagged, near jamming
+  double nu = 0;                       ///< requested volume fraction; the state has it to rounding
+  State state;                         ///< at rest, cell of exactly this density
+  Relaxation relaxation;               ///< `relaxed` false: flagged, near jamming
+  std::filesystem::path history = {};  ///< restart file of LAMMPS with its contacts' springs; empty: none
 };
 
 /// Receives results as they come, in order of time, so that the caller can save them.

@@ -54,7 +54,7 @@ class GivenContacts {
     entry.line = listed.line;
   }
 
-  GivenSums sum() {
+  GivenSums sum(bool may_pull) {
     GivenSums given;
     given.listed_twice = both_ways();
     complete();
@@ -75,7 +75,7 @@ class GivenContacts {
       });
       net += on_sphere.norm();
     }
-    judge(force, along);
+    if (!may_pull) judge(force, along);
     Eigen::Matrix3d& virial = given.sums.virial;
     const Eigen::Matrix3d symmetric = 0.5 * (virial + virial.transpose());
     if (force > 0) {
@@ -194,10 +194,10 @@ class GivenContacts {
 
 }  // namespace
 
-GivenSums sum_given(const Packing& packing, const std::vector<ListedContact>& contacts) {
+GivenSums sum_given(const Packing& packing, const std::vector<ListedContact>& contacts, bool may_pull) {
   GivenContacts given(packing);
   for (const ListedContact& contact : contacts) given.take(contact);
-  return given.sum();
+  return given.sum(may_pull);
 }
 
 }  // namespace grainlaw::dem

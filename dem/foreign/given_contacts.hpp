@@ -29,7 +29,8 @@ struct GivenSums {
 };
 
 /// Throws InvalidInput, without the name of the file, for contacts that cannot be those of the packing: spheres that are
-/// apart, overlaps without a contact, doubled or one-sided entries, forces that pull or do not follow the contacts.
-GivenSums sum_given(const Packing& packing, const std::vector<ListedContact>& contacts);
+/// apart, overlaps without a contact, doubled or one-sided entries, forces that pull (unless they may, by cohesion) or do not
+/// follow the contacts.
+GivenSums sum_given(const Packing& packing, const std::vector<ListedContact>& contacts, bool may_pull = false);
 
 }  // namespace grainlaw::dem

@@ -11,7 +11,8 @@ namespace fs = std::filesystem;
 
 ResumePolicy policy_of(const Execution& execution, const std::string& run) {
   return {execution.resume, execution.checkpoint_interval,
-          [&watch = execution.watch, run](const std::string& text) { watch.log(run + ": " + text); }};
+          [&watch = execution.watch, run](const std::string& text) { watch.log(run + ": " + text); }, execution.lammps,
+          execution.launcher};
 }
 
 CheckpointFiles::CheckpointFiles(fs::path folder, std::string key, const ResumePolicy& policy)

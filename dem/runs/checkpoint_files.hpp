@@ -17,6 +17,7 @@ struct ResumePolicy {
   bool resume = true;                           ///< go on from a checkpoint; false: start anew
   double checkpoint_interval = 60;              ///< wall time between two checkpoints [s]
   std::function<void(const std::string&)> log;  ///< told when a run goes on and what was damaged; may be empty
+  std::string lammps = {}, launcher = {};       ///< as in Execution
 };
 
 /// For the run with this name.

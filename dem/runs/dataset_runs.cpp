@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "dem/lammps/program.hpp"
 #include "dem/runs/feasibility.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/output.hpp"
@@ -128,6 +129,18 @@ std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std:
                      Role::validation});
   }
   return tests;
+}
+
+void require_engines(const std::vector<PlannedTest>& tests, const fs::path& parent, const Execution& execution) {
+  bool asked = false;
+  for (const PlannedTest& test : tests) {
+    if (!test.preparation.choice.is_lammps()) continue;
+    if (test.probes || test.frames > 0)
+      throw InvalidInput(fmt::format("{}{}: belong to the engine 'grainlaw'; remove them from what LAMMPS runs",
+                                     test.name.empty() ? "" : test.name + ": ", test.probes ? "probes" : "frames"));
+    asked = asked || !is_finished(parent / "runs", key_of(test));
+  }
+  if (asked) find_lammps(execution.lammps, execution.launcher);
 }
 
 void make_runs(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,

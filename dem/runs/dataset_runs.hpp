@@ -36,6 +36,11 @@ std::vector<std::uint64_t> new_seeds(const Spec& spec, const PathFile& path, con
 std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std::vector<std::uint64_t>& seeds,
                               const std::string& name);
 
+/// Throws InvalidInput where runs that are not finished in `parent`/runs cannot be made: LAMMPS is asked for and is not there.
+/// To be called before anything is written.
+void require_engines(const std::vector<PlannedTest>& tests, const std::filesystem::path& parent,
+                     const Execution& execution);
+
 /// What make_runs did.
 struct RunCounts {
   std::size_t runs = 0;   ///< preparations and tests

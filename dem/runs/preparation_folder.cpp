@@ -29,6 +29,10 @@ std::string kept_file(Branch branch, double nu) {
   return fmt::format("{}-{}.state", to_string(branch), density_text(nu));
 }
 
+std::string history_file(Branch branch, double nu) {
+  return fmt::format("{}-{}.restart", to_string(branch), density_text(nu));
+}
+
 OrderedJson packing_to_json(const State& state, std::optional<double> size_width) {
   return fields_to_json(PackingInfo{state.seed, static_cast<std::int64_t>(state.packing.size()),
                                     size_width.value_or(Observation::undefined), mean_radius(state.packing),
@@ -90,6 +94,11 @@ void PreparationFolder::keep(const KeptState& kept) {
                                  {"file", file},
                                  {"relaxation", relaxation_to_json(kept.relaxation)}});
   note_file(file);
+  if (!kept.history.empty()) {
+    const std::string history = history_file(kept.branch, kept.nu);
+    copy_durably(kept.history, folder_ / history);
+    note_file(history);
+  }
   if (!kept.relaxation.relaxed) {
     warn(fmt::format("state at nu = {} of the {} branch: not relaxed, max net force {:.3g} of the mean contact force",
                      kept.nu, to_string(kept.branch),

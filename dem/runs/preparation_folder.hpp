@@ -13,6 +13,8 @@ namespace grainlaw::dem {
 
 /// Name of the file of a kept state in its preparation's folder, e.g. "unloading-0.70.state".
 std::string kept_file(Branch branch, double nu);
+/// Likewise of the springs of its contacts, which LAMMPS reads: "unloading-0.70.restart".
+std::string history_file(Branch branch, double nu);
 
 /// The record's `packing`: seed, particles, size_width (null when unknown), mean_radius, stiffness.
 OrderedJson packing_to_json(const State& state, std::optional<double> size_width);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dem/files/state_file.hpp"
+#include "dem/lammps/lammps_preparation.hpp"
 #include "dem/runs/feasibility.hpp"
 #include "dem/runs/path_frames.hpp"
 #include "dem/runs/preparation_folder.hpp"
@@ -26,6 +27,17 @@ void name_functions(Json& request, const EngineOptions& engine) {
   if (engine.portable_bits) request["elementary_functions"] = "own";
 }
 
+/// What the other engine does not read of a request.
+void name_engine(Json& request, const EngineChoice& choice) {
+  if (choice.is_lammps()) {
+    for (const char* key : kOurEngineAlone) request.erase(key);
+    request["deck_version"] = kDeckVersion;
+  } else {
+    for_each_field<ContactModel>([&](const auto& field) { request.erase(field.name); });
+    request.erase("engine");
+  }
+}
+
 /// A preparation as its tests depend on it: without rows and without the list of states that were kept on the way.
 Json packing_identity(const PreparationOptions& o) {
   Json identity = fields_to_json(o, true);
@@ -35,6 +47,7 @@ Json packing_identity(const PreparationOptions& o) {
     identity.erase("rows");
     identity.erase("quasi_static_step");
   }
+  name_engine(identity, o.choice);
   return identity;
 }
 
@@ -75,7 +88,37 @@ Json request_of(const TestSetup& test) {
   given.update(Json(fields_to_json(o.drive)));
   name_functions(given, o.engine);
   if (o.drive.quasi_static_step == 0) given.erase("quasi_static_step");
+  given.update(Json(fields_to_json(o.choice)));
+  name_engine(given, o.choice);
   return request;
+}
+
+/// Where LAMMPS works on a run, and what its provenance says of it.
+constexpr const char* kScratch = ".lammps";
+LammpsPlace lammps_place(const fs::path& run, const ResumePolicy& policy) {
+  LammpsPlace place{run / kScratch, find_lammps(policy.lammps, policy.launcher), policy.log};
+  if (!place.program.is_known() && place.log)
+    place.log(
+        fmt::format("warning: LAMMPS of {} was not tried with these decks, {} was; each force is held against its law",
+                    place.program.version, kKnownLammps));
+  fs::create_directories(place.folder);
+  return place;
+}
+/// Whether LAMMPS can go on from a checkpoint of such a run.
+bool can_go_on(const fs::path& run, const std::optional<Checkpoint>& checkpoint, const EngineChoice& choice,
+               const ResumePolicy& policy) {
+  if (!checkpoint || !choice.is_lammps() || fs::exists(run / kScratch / restart_of(*checkpoint))) return true;
+  if (policy.log) policy.log("starts anew: the restart file of LAMMPS that belongs to the checkpoint is gone");
+  return false;
+}
+
+OrderedJson lammps_provenance(OrderedJson provenance, const std::optional<LammpsPlace>& place) {
+  if (place)
+    provenance["lammps"] = {{"executable", place->program.executable.string()},
+                            {"version", place->program.version},
+                            {"launcher", place->program.launcher},  // the last digits depend on it
+                            {"deck_version", kDeckVersion}};
+  return provenance;
 }
 
 /// The finished run; a damaged one is put aside and said to be.
@@ -84,6 +127,31 @@ std::optional<Json> sound_run(const RunStore& store, const std::string& key, con
   if (const auto damaged = store.set_aside_damaged(key); damaged && policy.log)
     policy.log(fmt::format("{}: damaged; put aside as {}.damaged, simulated again", damaged->string(), key));
   return std::nullopt;
+}
+
+OrderedJson with_contacts(OrderedJson packing, const EngineChoice& choice) {
+  if (!packing.is_null()) packing.update(changed_fields(choice.contacts));
+  return packing;
+}
+
+/// As run_element_test() and continue_element_test().
+ElementTest run_by_lammps(const LammpsPlace& place, const RunStore& store, const TestSetup& test,
+                          const ElementTestOptions& options, std::optional<Checkpoint> checkpoint,
+                          const RunControl& control, const Checkpointing& checkpointing) {
+  LammpsTest asked;
+  asked.name = kTestName;
+  asked.segments = resolve(test.path);
+  asked.options = options;
+  asked.contacts = test.preparation.choice.contacts;
+  if (!test.given && !checkpoint && test.preparation.choice.has_history()) {
+    asked.restart = "start.restart";  // a copy: words in a deck end at blanks
+    copy_durably(store.folder(preparation_key(test.preparation)) / history_file(test.path.branch, test.path.nu),
+                 place.folder / asked.restart);
+  }
+  const State start = checkpoint ? checkpoint->state : start_state(store, test, control);
+  ElementTest done = run_lammps_test(place, asked, start, std::move(checkpoint), control, checkpointing).test;
+  fs::remove_all(place.folder);
+  return done;
 }
 
 }  // namespace
@@ -111,24 +179,31 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
   const CheckpointFiles checkpoints(run, key, policy);
   PreparationFolder folder(run, key);
   auto checkpoint = checkpoints.load();
+  if (!can_go_on(run, checkpoint, options.choice, policy)) checkpoint.reset();
   if (checkpoint && !folder.take_up()) {
     if (policy.log) policy.log("starts anew: what it had yielded before the checkpoint is damaged or missing");
     checkpoint.reset();
   }
   if (!checkpoint) store.begin(key);
   const double earlier = checkpoint ? checkpoint->seconds : 0;
-  if (checkpoint) {
+  std::optional<LammpsPlace> place;
+  if (options.choice.is_lammps()) {
+    place = lammps_place(run, policy);
+    prepare_with_lammps(*place, options, folder.sink(), std::move(checkpoint), control, checkpoints.checkpointing());
+    fs::remove_all(place->folder);
+  } else if (checkpoint) {
     continue_preparation(std::move(*checkpoint), options, folder.sink(), control, checkpoints.checkpointing());
   } else {
     prepare(options, folder.sink(), control, checkpoints.checkpointing());
   }
-  store.finish(key, request,
-               {{"kind", "preparation"},
-                {"packing", folder.packing(options.packing)},
-                {"states", folder.states()},
-                {"warnings", folder.warnings()},
-                {"cost", fields_to_json(RunCost{0, 0, earlier + stopwatch.seconds()})},
-                {"provenance", provenance("preparation", options.engine.threads, stopwatch)}});
+  store.finish(
+      key, request,
+      {{"kind", "preparation"},
+       {"packing", with_contacts(folder.packing(options.packing), options.choice)},
+       {"states", folder.states()},
+       {"warnings", folder.warnings()},
+       {"cost", fields_to_json(RunCost{0, 0, earlier + stopwatch.seconds()})},
+       {"provenance", lammps_provenance(provenance("preparation", options.engine.threads, stopwatch), place)}});
   return store.find(key).value();
 }
 
@@ -151,6 +226,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   std::optional<PathFrames> frames;
   if (test.frames > 0) frames.emplace(folder, test.frames, segments, key);
   auto checkpoint = checkpoints.load();
+  if (!can_go_on(folder, checkpoint, o.choice, policy)) checkpoint.reset();
   if (checkpoint && frames && !frames->take_up()) {
     if (policy.log) policy.log("starts anew: a frame that was kept before the checkpoint is damaged");
     checkpoint.reset();
@@ -168,11 +244,14 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
     to_frames(stepper, segment, e);
   };
   const StepObserver& on_step = probes && frames ? to_both : frames ? to_frames : to_probes;
+  std::optional<LammpsPlace> place;
+  if (o.choice.is_lammps()) place = lammps_place(folder, policy);
   const ElementTest done =
-      checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
-                                         checkpoints.checkpointing())
-                 : run_element_test(start_state(store, test, control), segments, options, control, on_step,
-                                    checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
+      place ? run_by_lammps(*place, store, test, options, std::move(checkpoint), control, checkpoints.checkpointing())
+      : checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
+                                           checkpoints.checkpointing())
+                   : run_element_test(start_state(store, test, control), segments, options, control, on_step,
+                                      checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
   write_series(folder / "series.csv", done.rows);
   std::vector<std::string> warnings = done.warnings;
   if (probes) {
@@ -185,10 +264,10 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   const auto width = test.given ? std::nullopt : std::optional(o.packing.size_width);
   store.finish(key, request,
                {{"kind", "test"},
-                {"packing", packing_to_json(end, width)},
+                {"packing", with_contacts(packing_to_json(end, width), o.choice)},
                 {"warnings", warnings},
                 {"cost", fields_to_json(RunCost{done.steps, done.time_step, earlier + stopwatch.seconds()})},
-                {"provenance", provenance("element test", o.engine.threads, stopwatch)}});
+                {"provenance", lammps_provenance(provenance("element test", o.engine.threads, stopwatch), place)}});
   return store.find(key).value();
 }
 
@@ -217,6 +296,7 @@ Job test_job(const RunStore& store, const TestSetup& test, const std::string& na
 PackingInfo packing_from_record(const Json& record) {
   PackingInfo info;
   read_fields(record.at("packing"), info);
+  read_given_fields(record.at("packing"), info.contacts);
   if (std::isnan(info.size_width)) info.size_width = 0;  // of given spheres
   return info;
 }

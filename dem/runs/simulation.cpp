@@ -4,6 +4,7 @@
 
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
+#include "dem/runs/dataset_runs.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "model/files/column.hpp"
 #include "model/files/output.hpp"
@@ -120,6 +121,7 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
 }  // namespace
 
 SimulationResult simulate(const TestFile& test, const fs::path& output, const Execution& execution) {
+  require_engines({{test, "", Role::validation, test.start == Start::preparation}}, output, execution);
   return without_empty_folders({output}, [&] { return simulate_into(test, output, execution); });
 }
 

@@ -168,6 +168,7 @@ Spec spec_from_json(const Json& document, const std::string& name) {
   check_schema(document, Schema::spec, name);
   Spec spec;
   read_given_fields(document, spec);
+  refuse_keys_of_other_engine(document, spec.preparation.choice, name);
   std::sort(spec.densities.begin(), spec.densities.end());
   std::sort(spec.keep.begin(), spec.keep.end());
   if (document.contains("tests")) {
@@ -187,8 +188,22 @@ Spec read_spec(const std::filesystem::path& file) {
   return spec_from_json(read_json(file, JsonSource::user), one_line(file.string(), 200));
 }
 
+void refuse_keys_of_other_engine(const Json& document, const EngineChoice& choice, const std::string& name) {
+  if (!choice.is_lammps()) return;
+  for (const char* key : kOurEngineAlone) {
+    if (document.contains(key))
+      throw InvalidInput(
+          fmt::format("{}: {}: belongs to the engine 'grainlaw'; remove it, LAMMPS has its own", name, key));
+  }
+}
+
 OrderedJson spec_to_json(const Spec& spec) {
   OrderedJson object = fields_to_json(spec);
+  if (spec.preparation.choice.is_lammps()) {
+    for (const char* key : kOurEngineAlone) object.erase(key);
+  } else {
+    for_each_field<ContactModel>([&](const auto& field) { object.erase(field.name); });
+  }
   OrderedJson& tests = object["tests"] = OrderedJson::array();
   for (const TestRequest& test : spec.tests) tests.push_back(test_to_json(test));
   return object;

@@ -48,6 +48,9 @@ Spec spec_from_json(const Json& document, const std::string& name);
 /// The effective spec, defaults and derived values included; reading it gives the same spec.
 OrderedJson spec_to_json(const Spec& spec);
 
+/// Throws InvalidInput for keys of a SPEC or TEST that the chosen engine does not read.
+void refuse_keys_of_other_engine(const Json& document, const EngineChoice& choice, const std::string& name);
+
 /// Path of `test` from `nu`. The ISO branches go from one end of the branch to the other.
 Path path_of(const TestRequest& test, double nu, const Spec& spec);
 

@@ -5,6 +5,7 @@
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
 #include "dem/runs/feasibility.hpp"
+#include "dem/runs/spec_file.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
@@ -78,8 +79,15 @@ Start start_from(const Json& document, const std::string& name) {
 }
 
 /// What no simulation could start from.
-void check_given(const State& given, const EngineOptions& engine, const std::string& name) {
+void check_given(const State& given, const PreparationOptions& options, bool relaxed, const std::string& name) {
+  const EngineOptions& engine = options.engine;
   try {
+    check(options.choice, engine, options.drive);
+    if (options.choice.is_lammps() && !given.packing.H.isDiagonal(0))
+      throw InvalidInput("cell: is sheared; LAMMPS is given upright cells only");
+    if (relaxed && options.choice.contacts.normal_force != NormalForce::hooke)
+      throw InvalidInput(
+          "relax: is done by k delta, not by the normal_force that is asked for; relax the spheres before");
     check(given.material);
     check_sizes(given.packing);
     check_time_step(engine.time_step_fraction, given.material, lightest_pair(given.packing));
@@ -97,6 +105,7 @@ TestFile test_from_document(const Json& document, const std::filesystem::path& f
   PreparationOptions& preparation = test.preparation;
   read_given_fields(document, preparation);
   test.rows = preparation.rows;
+  refuse_keys_of_other_engine(document, preparation.choice, name);
   preparation.packing.seed = document.value("seed", preparation.packing.seed);
   test.relax = document.value("relax", false);
   test.frames = document.value("frames", 0);
@@ -121,7 +130,7 @@ TestFile test_from_document(const Json& document, const std::filesystem::path& f
     test.given = read_state(beside("state"));
     test.given_digest = sha256_of_file(beside("state"));
   }
-  if (test.given) check_given(*test.given, preparation.engine, name);
+  if (test.given) check_given(*test.given, preparation, test.relax, name);
   Json path{{"initial", document.value("initial", Json::object())},
             {"segments", document.value("segments", Json::array())}};
   if (test.given) path["initial"]["nu"] = volume_fraction(test.given->packing);

@@ -26,7 +26,7 @@ OrderedJson identity(const DatasetTest& test) {
                        {"path", path_to_json(test.record.path)},
                        {"packing", fields_to_json(test.record.packing)},
                        {"sha256", test.sha256}};
-  if (test.record.packing.friction > 0) identity["packing"]["friction"] = test.record.packing.friction;
+  identity["packing"].update(changed_fields(test.record.packing.contacts));
   if (!test.probes_sha256.empty()) identity["probes_sha256"] = test.probes_sha256;
   return identity;
 }
@@ -49,7 +49,7 @@ DatasetTest read_test(const Json& object, const fs::path& folder, const std::str
   test.record.role = value_of<Role>(object["role"].get<std::string>(), "role");
   test.record.path = path_from_json(object["path"], index, place + ".path.", true);
   read_given_fields(object["packing"], test.record.packing);
-  test.record.packing.friction = object["packing"].value("friction", 0.0);
+  read_given_fields(object["packing"], test.record.packing.contacts);
   const fs::path file = folder / (test.record.name + ".csv");
   test.record.rows = read_series(file, test.record.path, test.record.packing);
   test.sha256 = sha256_of_file(file);

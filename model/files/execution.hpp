@@ -35,6 +35,8 @@ struct Execution {
   double checkpoint_interval = 60;  ///< between two checkpoints of a run; 0: every step [s]
   std::string command = "library";  ///< who called, for the provenance of files
   Stopwatch stopwatch = {};         ///< started with the call
+  std::string lammps = {};          ///< executable of LAMMPS, for runs that ask for it; empty: lmp on PATH
+  std::string launcher = {};        ///< words before it, parted by blanks, e.g. "mpirun -n 2"; empty: none
 };
 
 /// {grainlaw, git_revision, compiler, build_type, compile_flags, libraries, command, threads, began, seconds,

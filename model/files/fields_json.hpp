@@ -24,6 +24,17 @@ void read_fields(const Json& json, T& object);
 template <HasFields T>
 void read_given_fields(const Json& json, T& object);
 
+/// The fields in which `object` is not as it is by default.
+template <HasFields T>
+OrderedJson changed_fields(const T& object) {
+  OrderedJson json = fields_to_json(object);
+  const OrderedJson usual = fields_to_json(T{});
+  for (const auto& field : usual.items()) {
+    if (json[field.key()] == field.value()) json.erase(field.key());
+  }
+  return json;
+}
+
 /// Lists of them as arrays.
 template <HasFields T>
 OrderedJson fields_to_json(const std::vector<T>& list);

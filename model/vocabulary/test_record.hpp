@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "model/vocabulary/contact_model.hpp"
 #include "model/vocabulary/observation.hpp"
 #include "model/vocabulary/path.hpp"
 
@@ -26,7 +27,7 @@ struct PackingInfo {
   double size_width = 0;       ///< w = r_max/r_min of the uniform distribution [-]
   double mean_radius = 0;      ///< <r> of this packing [m]
   double stiffness = 0;        ///< k [kg/s^2]
-  double friction = 0;         ///< coefficient of friction of its contacts; in dataset.json where there is any [-]
+  ContactModel contacts = {};  ///< what its contacts know; in dataset.json where it is more than Eq. (1)
 
   double stress_unit() const { return stiffness / (2 * mean_radius); }  ///< k/(2<r>) = stress of P* = 1 [Pa]
 };
@@ -37,7 +38,7 @@ constexpr auto fields_of(std::type_identity<PackingInfo>) {
                     Field{&P::size_width, "size_width"},
                     Field{&P::mean_radius, "mean_radius", "m"},
                     Field{&P::stiffness, "stiffness", "kg/s^2"},
-                    Field{&P::friction, "friction", "", "", "", Rule::free}};  // so that digests without it stay
+                    Field{&P::contacts, "contacts", "", "", "", Rule::free}};  // so that digests without it stay
 }
 static_assert(tells_every_member<PackingInfo>());
 

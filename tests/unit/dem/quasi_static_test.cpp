@@ -14,12 +14,12 @@
 namespace grainlaw::dem {
 namespace {
 
-struct Scene {
+struct AffineScene {
   State start;
   std::vector<StraightSegment> path;
   ElementTestOptions options;
 
-  Scene(double eps_dev, double step, int rows) {
+  AffineScene(double eps_dev, double step, int rows) {
     scene::Draw draw(5);
     start = scene::random_state(80, 3, 0.76, scene::cubic(1), draw);
     path = resolve({volume_fraction(start.packing),
@@ -43,7 +43,7 @@ double max_net_force(const State& state) {
 }
 
 TEST(QuasiStatic, EveryStepEndsInEquilibriumOnThePath) {
-  const Scene scene(0.06, 4e-3, 5);
+  const AffineScene scene(0.06, 4e-3, 5);
   std::uint64_t seen = 0;
   const ElementTest test = scene.run([&](Stepper& stepper, int index, double e) {
     Simulation& sim = stepper.simulation();
@@ -74,7 +74,7 @@ TEST(QuasiStatic, EveryStepEndsInEquilibriumOnThePath) {
 TEST(QuasiStatic, WorkIsThatOfTheStressAndDissipationVanishesWithTheStep) {
   double dissipated[2];
   for (const int k : {0, 1}) {
-    Scene scene(4e-5, k == 0 ? 4e-6 : 2e-6, 10);
+    AffineScene scene(4e-5, k == 0 ? 4e-6 : 2e-6, 10);
     scene.options.relax.tolerance = 1e-12;
     const ElementTest test = scene.run();
     double work = 0;
@@ -99,7 +99,7 @@ TEST(QuasiStatic, ALatticeIsCompressedAffinely) {
     const Eigen::Vector3d place(i % 4, i / 4 % 4, i / 16);
     balls.push_back({1e-3, 1.9e-3 * (place + Eigen::Vector3d::Constant(0.5)), {0, 0, 0}});
   }
-  Scene scene(0.01, 1e-3, 4);
+  AffineScene scene(0.01, 1e-3, 4);
   scene.start = scene::state_of(scene::cubic(4 * 1.9e-3), balls);
   scene.path = resolve({volume_fraction(scene.start.packing),
                         Branch::loading,
@@ -115,7 +115,7 @@ TEST(QuasiStatic, ALatticeIsCompressedAffinely) {
 
 // R5: from each checkpoint the same run, bit for bit.
 TEST(QuasiStatic, ContinuesToTheSameBits) {
-  Scene scene(0.02, 2e-3, 5);
+  AffineScene scene(0.02, 2e-3, 5);
   scene.path = resolve({volume_fraction(scene.start.packing),
                         Branch::unloading,
                         {{Mode::D2, direction_of(Mode::D2, "xyz", false), ExtentKind::eps_dev, 0.02},
@@ -136,7 +136,7 @@ TEST(QuasiStatic, ContinuesToTheSameBits) {
 }
 
 TEST(QuasiStatic, StopsOnRequestAtAStep) {
-  const Scene scene(0.05, 1e-3, 10);
+  const AffineScene scene(0.05, 1e-3, 10);
   std::stop_source stop;
   RunControl control;
   control.stop = stop.get_token();
@@ -155,7 +155,7 @@ TEST(QuasiStatic, StopsOnRequestAtAStep) {
 }
 
 TEST(QuasiStatic, SaysWhereMinimisationsStoppedShort) {
-  Scene scene(0.01, 2e-3, 5);
+  AffineScene scene(0.01, 2e-3, 5);
   relax(scene.start, {}, {1e-10, 200000}, {});
   scene.options.relax.max_passes = 3;
   const ElementTest test = scene.run();
@@ -164,7 +164,7 @@ TEST(QuasiStatic, SaysWhereMinimisationsStoppedShort) {
 }
 
 TEST(QuasiStatic, RefusesWhatItCannotDo) {
-  Scene scene(0.01, 2e-3, 5);
+  AffineScene scene(0.01, 2e-3, 5);
   scene.options.drive.transport = Transport::wall;
   EXPECT_THROW(scene.run(), InvalidInput);
   scene.options.drive.transport = Transport::homogeneous;
