@@ -155,10 +155,10 @@ std::string text_of(const Owner& owner) { return fmt::format("process {} on {}",
 
 }  // namespace
 
-ProcessLock::ProcessLock(fs::path file) : file_(std::move(file)) {
-  heart_ = std::jthread([this](const std::stop_token& stop) {
+ProcessLock::ProcessLock(fs::path file, std::chrono::milliseconds heartbeat) : file_(std::move(file)) {
+  heart_ = std::jthread([this, heartbeat](const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
-    while (!stopped_.wait_for(lock, stop, kHeartbeat, [&] { return stop.stop_requested(); })) {
+    while (!stopped_.wait_for(lock, stop, heartbeat, [&] { return stop.stop_requested(); })) {
       if (utimensat(AT_FDCWD, file_.c_str(), nullptr, 0) != 0 && (errno == ENOENT || errno == ESTALE)) {
         lost_.request_stop();
         return;
@@ -174,7 +174,7 @@ ProcessLock::~ProcessLock() {
   rmdir(file_.parent_path().c_str());  // unless another has it already
 }
 
-std::unique_ptr<ProcessLock> ProcessLock::try_lock(const fs::path& place) {
+std::unique_ptr<ProcessLock> ProcessLock::try_lock(const fs::path& place, std::chrono::milliseconds heartbeat) {
   constexpr int kTries = 100;  // as others take it, give it back and tidy up at the same time
   for (int tries = 0; tries < kTries; ++tries) {
     if (living_owner(place)) return nullptr;
@@ -186,7 +186,8 @@ std::unique_ptr<ProcessLock> ProcessLock::try_lock(const fs::path& place) {
     const bool renamed = file >= 0 && close(file) == 0 && std::rename(candidate.c_str(), place.c_str()) == 0;
     const int error = errno;
     // a network file system may say no to what it has done
-    if (fs::exists(fs::symlink_status(place / owner))) return std::unique_ptr<ProcessLock>(new ProcessLock(place / owner));
+    if (fs::exists(fs::symlink_status(place / owner)))
+      return std::unique_ptr<ProcessLock>(new ProcessLock(place / owner, heartbeat));
     unlink(sign.c_str());
     rmdir(candidate.c_str());
     errno = error;

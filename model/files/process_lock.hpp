@@ -2,7 +2,7 @@
 // A lock among processes, also of several machines on one network file system: a folder PLACE that holds one empty file, named after
 // its owner. It is made beside PLACE and renamed to it, which a file system grants to one of those who try. Whoever finds the file of a
 // dead owner removes it by its name, which no other owner has, and then tries like all others. A living owner touches its file
-// every kHeartbeat; it is dead when its process is no longer on this machine, or is on another and silent for kSilence.
+// at each heartbeat; it is dead when its process is no longer on this machine, or is on another and silent for kSilence.
 
 #include <chrono>
 #include <condition_variable>
@@ -23,7 +23,8 @@ class ProcessLock {
  public:
   /// The lock PLACE in an existing folder; nothing when a living process, or another thread of this one, has it. Throws Error when the
   /// folder cannot be written to.
-  static std::unique_ptr<ProcessLock> try_lock(const std::filesystem::path& place);
+  static std::unique_ptr<ProcessLock> try_lock(const std::filesystem::path& place,
+                                               std::chrono::milliseconds heartbeat = kHeartbeat);
 
   /// Waits for it; `busy` is told once who has it. Throws Interrupted.
   static std::unique_ptr<ProcessLock> wait(const std::filesystem::path& place, const std::stop_token& stop,
@@ -36,7 +37,7 @@ class ProcessLock {
   std::stop_token lost() const { return lost_.get_token(); }
 
  private:
-  explicit ProcessLock(std::filesystem::path file);
+  ProcessLock(std::filesystem::path file, std::chrono::milliseconds heartbeat);
 
   std::filesystem::path file_;
   std::stop_source lost_;
