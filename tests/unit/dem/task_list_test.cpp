@@ -55,7 +55,7 @@ TEST_F(TaskLists, AreDealtOutInLikeShares) {
                            R"("seeds": [1], "densities": [0.72, 0.73, 0.74, 0.75, 0.76, 0.77, 0.78, 0.79, 0.8])"}) {
     for (const int tasks : {1, 2, 3, 8, 1000}) {
       look_at(spec);
-      double longest = list_.front().particle_steps;
+      const double longest = list_.front().particle_steps;
       deal(list_, tasks);
       std::map<int, double> load;
       std::set<std::string> keys;
@@ -84,7 +84,8 @@ TEST_F(TaskLists, KeepTestsWithTheirPreparation) {
   std::map<std::string, int> task_of;
   for (const ListedRun& run : list_) task_of[run.key] = run.task;
   for (const ListedRun& run : list_) {
-    if (!run.preparation.empty()) EXPECT_EQ(run.task, task_of[run.preparation]) << run.name;
+    if (run.preparation.empty()) continue;
+    EXPECT_EQ(run.task, task_of[run.preparation]) << run.name;
   }
 }
 

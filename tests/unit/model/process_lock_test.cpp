@@ -140,12 +140,16 @@ TEST_F(Locks, OfAnotherMachineAreTakenOverAfterSilenceByOne) {
         while (!fs::exists(folder_ / "go")) {
         }
         const auto lock = ProcessLock::try_lock(place());
+        put("tried-" + std::to_string(i), "");
         while (!fs::exists(folder_ / "end")) usleep(100);
         return lock ? 1 : 0;
       }));
     }
     put("go", "");
-    usleep(20000);  // until all have tried
+    for (int i = 0; i < 6; ++i) {
+      while (!fs::exists(folder_ / ("tried-" + std::to_string(i)))) usleep(100);
+      fs::remove(folder_ / ("tried-" + std::to_string(i)));
+    }
     put("end", "");
     int winners = 0;
     for (const pid_t process : processes) winners += exit_code_of(process);
