@@ -2,7 +2,6 @@
 #include "dem/runs/runs.hpp"
 
 #include <map>
-#include <thread>
 
 #include "dem/files/state_file.hpp"
 #include "dem/runs/dataset_runs.hpp"
@@ -314,54 +313,6 @@ TEST_F(Runs, BecomeADataSet) {
   run_planned({planned[0], planned[1]}, Json(spec_to_json(spec)), folder_ / "dataset", store, session, fewer);
   EXPECT_FALSE(fs::exists(folder_ / "dataset" / "D2-0.74-s2.csv"));
   EXPECT_EQ(read_dataset(folder_ / "dataset").tests.size(), 2u);
-}
-
-// Two that work on the same runs at once share them: each run is made once.
-TEST_F(Runs, AreSharedByThoseWhoWorkInOneStore) {
-  const Spec spec = tiny_spec();
-  const auto planned = plan(spec);
-  const auto runs = runs_of(planned);
-  const auto work = [&](RunCounts& counts, MissingRuns missing) {
-    const RunStore store(folder_, "runs");
-    make_runs(runs, store, {.threads = 2}, counts, missing);
-  };
-  RunCounts one, other, waiting;
-  {
-    const std::jthread a([&] { work(one, MissingRuns::simulated); }), b([&] { work(other, MissingRuns::simulated); }),
-        c([&] { work(waiting, MissingRuns::awaited); });
-  }
-  const auto made = [](const RunCounts& counts) { return counts.runs - counts.found - counts.others; };
-  EXPECT_EQ(made(one) + made(other), 6u);
-  EXPECT_EQ(made(waiting), 0u);
-  EXPECT_EQ(waiting.runs, 6u);
-  for (const PlannedRun& run : runs) EXPECT_TRUE(is_finished(folder_ / "runs", run.key));
-  for (const auto& entry : fs::directory_iterator(folder_ / "runs"))
-    EXPECT_FALSE(entry.path().filename().string().find(".lock") != std::string::npos) << entry.path();
-}
-
-TEST_F(Runs, AreLeftToOthersWhoHoldTheirLocks) {
-  const auto planned = plan(tiny_spec());
-  const auto runs = with_preparations(runs_of(planned), {2});
-  ASSERT_EQ(runs.size(), 2u);  // the test and its preparation
-  EXPECT_TRUE(runs[0].is_preparation);
-  EXPECT_EQ(runs[1].after, 0u);
-  const RunStore store(folder_, "runs");
-  auto lock = store.try_lock(runs[0].key);
-  ASSERT_TRUE(lock);
-  EXPECT_TRUE(maker_of(store.root(), runs[0].key));
-  std::stop_source stop;
-  RunCounts counts;
-  {
-    const std::jthread later([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-      stop.request_stop();
-    });
-    EXPECT_THROW(make_runs(runs, store, {.threads = 1, .stop = stop.get_token()}, counts), Interrupted);
-  }
-  EXPECT_FALSE(fs::exists(store.folder(runs[0].key)));
-  lock.reset();
-  make_runs(runs, store, {.threads = 1}, counts);
-  EXPECT_TRUE(store.find(runs[1].key));
 }
 
 TEST_F(Runs, ProbesAreKeptBesideTheSeries) {
