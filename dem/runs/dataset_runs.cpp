@@ -102,6 +102,7 @@ std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std:
 }
 
 std::unique_ptr<ProcessLock> lock_results(const fs::path& folder, const Execution& execution) {
+  make_output_folder(folder);  // another may have left nothing and taken it along
   remove_dead_locks(folder);
   return ProcessLock::wait(folder / ".results.lock", execution.stop, [&](const std::string& owner) {
     execution.watch.log(fmt::format("waits for {}, which writes results to {}", owner, folder.string()));

@@ -76,8 +76,10 @@ RunStore::~RunStore() {
 fs::path RunStore::folder(const std::string& key) const { return root_ / key; }
 
 std::unique_ptr<ProcessLock> RunStore::try_lock(const std::string& key) const {
+  std::error_code none;
+  fs::create_directory(root_, none);  // another may have left nothing and taken it along
   auto lock = ProcessLock::try_lock(root_ / (key + ".lock"));
-  std::error_code none;  // opening it makes a network file system look again for what others have finished there
+  // opening it makes a network file system look again for what others have finished there
   if (lock) fs::directory_iterator(folder(key), none);
   return lock;
 }
