@@ -23,10 +23,7 @@ ExitCode runs(const RunsOptions& options, Session& session) {
   const chain::CalibrationInput input = chain::read_calibration_input(options.spec, {});
   const std::vector<dem::PlannedTest> tests = plan(*input.spec);
   RunListing listing = listing_of(dem::listed(dem::runs_of(tests)), options.output);
-  if (options.tasks > 0) {
-    dem::deal(listing.missing, options.tasks);
-    dem::write_tasks({*input.spec, listing.missing}, options.output, session);
-  }
+  if (options.tasks > 0) listing.missing = dem::write_tasks(*input.spec, options.tasks, options.output, session).runs;
   print_result(session.json ? json_text(to_json(listing)) : text_of(listing, options.output));
   return ExitCode::ok;
 }

@@ -90,8 +90,8 @@ ExitCode watch_jobs(const dem::Spec& spec, const fs::path& folder, const std::ve
     throw Error(fmt::format("jobs {} are over without a calibration; see the logs in {}, the same command goes on",
                             names, tasks.string()));
   if (*code != 0 && *code != static_cast<int>(ExitCode::not_converged))
-    throw Error(fmt::format("the calibration ended with exit code {}; see {}", *code,
-                            (tasks / "calibration.log").string()));
+    throw Error(
+        fmt::format("the calibration ended with exit code {}; see {}", *code, (tasks / "calibration.log").string()));
   return static_cast<ExitCode>(*code);
 }
 

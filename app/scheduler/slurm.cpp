@@ -1,7 +1,6 @@
 #include "app/scheduler/slurm.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "dem/runs/task_list.hpp"
 #include "model/files/one_line.hpp"
+#include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
@@ -73,8 +73,6 @@ std::string script(const std::string& name, const std::string& log, const std::s
                      fmt::arg("end", end));
 }
 
-std::string this_program() { return quoted(fs::read_symlink("/proc/self/exe").string()); }
-
 struct Answer {
   int exit_code = 0;
   std::string text;  ///< standard output and error
@@ -93,29 +91,40 @@ Answer answer_of(const std::string& command) {
 
 }  // namespace
 
-std::string array_script(const fs::path& folder, const std::vector<int>& tasks, const SlurmOptions& options) {
-  const std::string log = quoted((folder / dem::kTasksFolder / "task-").string()) + "\"$SLURM_ARRAY_TASK_ID\".log";
-  return script("grainlaw-runs", log,
-                fmt::format("{} task {} \"$SLURM_ARRAY_TASK_ID\"", this_program(), quoted(folder.string())), "",
-                fmt::format("#SBATCH --array={}\n", ranges_of(tasks)), options);
+std::vector<fs::path> write_scripts(const fs::path& folder, const std::vector<int>& tasks,
+                                    const SlurmOptions& options) {
+  const fs::path place = folder / dem::kTasksFolder, array = place / "tasks.sbatch",
+                 last = place / "calibration.sbatch";
+  const std::string program = quoted(fs::read_symlink("/proc/self/exe").string()), output = quoted(folder.string());
+  std::vector<fs::path> scripts;
+  fs::remove(array);
+  if (!tasks.empty()) {
+    write_durably(array, script("grainlaw-runs", quoted((place / "task-").string()) + "\"$SLURM_ARRAY_TASK_ID\".log",
+                                fmt::format("{} task {} \"$SLURM_ARRAY_TASK_ID\"", program, output), "",
+                                fmt::format("#SBATCH --array={}\n", ranges_of(tasks)), options));
+    scripts.push_back(array);
+  }
+  write_durably(
+      last, script("grainlaw-calibrate", quoted((place / "calibration.log").string()),
+                   fmt::format("{} calibrate {} -o {}", program, quoted((place / "spec.json").string()), output),
+                   fmt::format("echo \"$code\" >{}\n", quoted((place / "calibration.exit").string())), "", options));
+  scripts.push_back(last);
+  return scripts;
 }
 
-std::string calibration_script(const fs::path& folder, const SlurmOptions& options) {
-  const fs::path tasks = folder / dem::kTasksFolder;
-  return script("grainlaw-calibrate", quoted((tasks / "calibration.log").string()),
-                fmt::format("{} calibrate {} -o {}", this_program(), quoted((tasks / "spec.json").string()),
-                            quoted(folder.string())),
-                fmt::format("echo \"$code\" >{}\n", quoted((tasks / "calibration.exit").string())), "", options);
-}
-
-std::string submit(const fs::path& script, const std::string& after) {
-  const std::string dependency =
-      after.empty() ? "" : fmt::format("--dependency=afterok:{} --kill-on-invalid-dep=yes ", after);
-  const Answer answer = answer_of(fmt::format("sbatch --parsable {}{}", dependency, quoted(script.string())));
-  const std::string job = answer.text.substr(0, answer.text.find_first_of(";\n"));
-  if (answer.exit_code != 0 || job.empty() || job.find_first_not_of("0123456789") != std::string::npos)
-    throw Error(fmt::format("{}: sbatch does not take it: {}", script.string(), one_line(answer.text, 300)));
-  return job;
+std::vector<std::string> submit(const std::vector<fs::path>& scripts) {
+  std::vector<std::string> jobs;
+  fs::remove(scripts.back().parent_path() / "calibration.exit");
+  for (const fs::path& script : scripts) {
+    const std::string after =
+        jobs.empty() ? "" : fmt::format("--dependency=afterok:{} --kill-on-invalid-dep=yes ", jobs.back());
+    const Answer answer = answer_of(fmt::format("sbatch --parsable {}{}", after, quoted(script.string())));
+    const std::string job = answer.text.substr(0, answer.text.find_first_of(";\n"));
+    if (answer.exit_code != 0 || job.empty() || job.find_first_not_of("0123456789") != std::string::npos)
+      throw Error(fmt::format("{}: sbatch does not take it: {}", script.string(), one_line(answer.text, 300)));
+    jobs.push_back(job);
+  }
+  return jobs;
 }
 
 QueueState queue_state(const std::vector<std::string>& jobs) {

@@ -14,16 +14,15 @@ struct SlurmOptions {
   std::vector<std::string> more;         ///< further options of sbatch, e.g. "--mem=4G"
 };
 
-/// Bash script of the array job that makes `tasks` of `folder`/tasks. TERM, which Slurm sends a minute before the time limit, leads to
-/// a checkpoint and back into the queue, and so does the death of the program, ten times.
-std::string array_script(const std::filesystem::path& folder, const std::vector<int>& tasks, const SlurmOptions& options);
+/// Writes bash scripts to `folder`/tasks and returns them in the order of running: tasks.sbatch, an array job that makes `tasks` (unless
+/// there are none), and calibration.sbatch, which leaves its exit code in calibration.exit. TERM, which Slurm sends a minute before
+/// the time limit, leads to a checkpoint and back into the queue, and so does the death of the program, ten times.
+std::vector<std::filesystem::path> write_scripts(const std::filesystem::path& folder, const std::vector<int>& tasks,
+                                                 const SlurmOptions& options);
 
-/// Likewise of the calibration, which leaves its exit code in `folder`/tasks/calibration.exit.
-std::string calibration_script(const std::filesystem::path& folder, const SlurmOptions& options);
-
-/// Hands a script to sbatch, to run after the job `after` has succeeded unless that is empty; the number of the job. Throws Error with
-/// what sbatch says.
-std::string submit(const std::filesystem::path& script, const std::string& after);
+/// Hands scripts to sbatch, each to run after the one before has succeeded; the numbers of the jobs. Throws Error with what
+/// sbatch says.
+std::vector<std::string> submit(const std::vector<std::filesystem::path>& scripts);
 
 /// How many of a job's tasks are in each state.
 struct QueueState {

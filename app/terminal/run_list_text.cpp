@@ -47,10 +47,12 @@ std::string text_of(const RunListing& listing, const std::filesystem::path& outp
                                  listing.missing.size() - made.size(), work_of(listing.missing));
   const std::vector<double> loads = loads_of(listing.missing);
   if (!listing.missing.empty())
-    text += fmt::format("  {:>14} {:>6} {:<7} {:<12} {}\n", "particle-steps", loads.empty() ? "" : "task", "", "key", "name");
+    text += fmt::format("  {:>14} {:>6} {:<7} {:<12} {}\n", "particle-steps", loads.empty() ? "" : "task", "", "key",
+                        "name");
   for (const dem::ListedRun& run : listing.missing) {
-    text += fmt::format("  {:14.3g} {:>6} {:<7} {} {}\n", run.particle_steps, loads.empty() ? "" : std::to_string(run.task),
-                        made.contains(run.key) ? "made" : "missing", run.key.substr(0, kShownDigits), run.name);
+    text +=
+        fmt::format("  {:14.3g} {:>6} {:<7} {} {}\n", run.particle_steps, loads.empty() ? "" : std::to_string(run.task),
+                    made.contains(run.key) ? "made" : "missing", run.key.substr(0, kShownDigits), run.name);
   }
   if (loads.empty()) return text;
   const auto [least, most] = std::minmax_element(loads.begin(), loads.end());

@@ -34,8 +34,7 @@ double kept(const PreparationOptions& o) {
 
 double bytes_of(const PlannedRun& run) {
   const PreparationOptions& o = run.test->preparation;
-  if (run.is_preparation)
-    return kBytesPerRecord + 2 * o.rows * kBytesPerRow + kept(o) * spheres(o) * kBytesPerKept;
+  if (run.is_preparation) return kBytesPerRecord + 2 * o.rows * kBytesPerRow + kept(o) * spheres(o) * kBytesPerKept;
   const double rows = static_cast<double>(run.test->path.segments.size()) * run.test->rows + 1;
   return kBytesPerRecord + rows * kBytesPerRow + spheres_of(*run.test) * kBytesPerEnd;
 }

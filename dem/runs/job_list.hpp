@@ -28,7 +28,8 @@ struct Job {
   double work = 0;                   ///< expected amount, 0 when there is nothing to do [particle-steps]
   std::optional<std::size_t> after;  ///< index of an earlier job that must be finished first
   std::function<void(int threads, const RunControl& control)> run;
-  std::function<Claim()> claim = {};  ///< asked before it is run, and each second while it is done elsewhere; empty: mine
+  std::function<Claim()> claim =
+      {};  ///< asked before it is run, and each second while it is done elsewhere; empty: mine
 };
 
 /// Runs all jobs on `threads` threads. When one throws, the others are stopped and the first error in the order of the

@@ -144,8 +144,8 @@ std::vector<PlannedRun> with_preparations(const std::vector<PlannedRun>& runs, c
   return chosen;
 }
 
-void make_runs(const std::vector<PlannedRun>& runs, const RunStore& store, const Execution& execution, RunCounts& counts,
-               MissingRuns missing) {
+void make_runs(const std::vector<PlannedRun>& runs, const RunStore& store, const Execution& execution,
+               RunCounts& counts, MissingRuns missing) {
   std::vector<Job> jobs;
   std::atomic<std::size_t> others = 0;
   for (const PlannedRun& run : runs) {

@@ -42,13 +42,13 @@ enum class MissingRuns {
 
 /// What make_runs did.
 struct RunCounts {
-  std::size_t runs = 0;   ///< preparations and tests
-  std::size_t found = 0;  ///< of those, finished before
-  std::size_t others = 0; ///< of those, finished meanwhile by other processes
+  std::size_t runs = 0;    ///< preparations and tests
+  std::size_t found = 0;   ///< of those, finished before
+  std::size_t others = 0;  ///< of those, finished meanwhile by other processes
 };
 
 /// Returns when all runs are in the store; nothing else changes. Those that are waited for are named to the watch.
-void make_runs(const std::vector<PlannedRun>& runs, const RunStore& store, const Execution& execution, RunCounts& counts,
-               MissingRuns missing = MissingRuns::simulated);
+void make_runs(const std::vector<PlannedRun>& runs, const RunStore& store, const Execution& execution,
+               RunCounts& counts, MissingRuns missing = MissingRuns::simulated);
 
 }  // namespace grainlaw::dem

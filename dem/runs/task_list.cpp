@@ -32,9 +32,8 @@ std::vector<ListedRun> listed(const std::vector<PlannedRun>& runs) {
   for (const PlannedRun& run : runs) {
     list.push_back({0, run.name, run.key, run.after ? runs[*run.after].key : "", expected_particle_steps(run)});
   }
-  std::stable_sort(list.begin(), list.end(), [](const ListedRun& a, const ListedRun& b) {
-    return a.particle_steps > b.particle_steps;
-  });
+  std::stable_sort(list.begin(), list.end(),
+                   [](const ListedRun& a, const ListedRun& b) { return a.particle_steps > b.particle_steps; });
   return list;
 }
 
@@ -56,7 +55,11 @@ void deal(std::vector<ListedRun>& runs, int tasks) {
   std::stable_sort(runs.begin(), runs.end(), [](const ListedRun& a, const ListedRun& b) { return a.task < b.task; });
 }
 
-void write_tasks(const TaskList& list, const fs::path& output, const Execution& execution) {
+TaskList write_tasks(const Spec& spec, int tasks, const fs::path& output, const Execution& execution) {
+  const std::vector<PlannedTest> tests = plan(spec);
+  TaskList list{spec, listed(runs_of(tests))};
+  std::erase_if(list.runs, [&](const ListedRun& run) { return is_finished(output / "runs", run.key); });
+  deal(list.runs, tasks);
   make_output_folder(output);
   const fs::path folder = make_subfolder(output, kTasksFolder);
   write_json(folder / "spec.json", spec_to_json(list.spec));
@@ -64,13 +67,14 @@ void write_tasks(const TaskList& list, const fs::path& output, const Execution& 
   document["runs"] = fields_to_json(list.runs);
   document["provenance"] = provenance(execution);
   write_json(folder / "tasks.json", document);
+  return list;
 }
 
 TaskList read_tasks(const fs::path& output) {
   const fs::path folder = output / kTasksFolder, file = folder / "tasks.json";
   if (!fs::exists(file))
-    throw InvalidInput(fmt::format("{}: not found; grainlaw runs SPEC -o {} --array N writes it", file.string(),
-                                   output.string()));
+    throw InvalidInput(
+        fmt::format("{}: not found; grainlaw runs SPEC -o {} --array N writes it", file.string(), output.string()));
   TaskList list{read_spec(folder / "spec.json"), {}};
   const Json document = read_json(file, JsonSource::own);
   try {
@@ -96,12 +100,11 @@ RunCounts make_tasks(const TaskList& list, const std::vector<std::string>& which
       found = true;
       const auto place = place_of.find(run.key);
       if (place == place_of.end())
-        throw InvalidInput(fmt::format("{}: {} is no run of this version or of spec.json beside it; write it anew",
-                                       file, run.name));
+        throw InvalidInput(
+            fmt::format("{}: {} is no run of this version or of spec.json beside it; write it anew", file, run.name));
       places.push_back(place->second);
     }
-    if (!found)
-      throw InvalidInput(fmt::format("{}: has no task, run or key '{}'", file, one_line(word, 70)));
+    if (!found) throw InvalidInput(fmt::format("{}: has no task, run or key '{}'", file, one_line(word, 70)));
   }
   RunCounts counts;
   const RunStore store(output, "runs");

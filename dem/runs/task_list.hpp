@@ -43,8 +43,9 @@ struct TaskList {
   std::vector<ListedRun> runs;  ///< as they were dealt out
 };
 
-/// Writes `output`/tasks. Throws Error, InvalidInput for what is no folder.
-void write_tasks(const TaskList& list, const std::filesystem::path& output, const Execution& execution);
+/// Deals the runs of `spec` that are not finished in `output`/runs out to tasks and writes `output`/tasks. Throws Error, InvalidInput
+/// for what is no folder.
+TaskList write_tasks(const Spec& spec, int tasks, const std::filesystem::path& output, const Execution& execution);
 
 /// Throws InvalidInput that names the command which writes it.
 TaskList read_tasks(const std::filesystem::path& output);

@@ -95,7 +95,8 @@ TEST(JobList, DoesOthersFirstWhileOneIsDoneElsewhere) {
   std::atomic<bool> released = false;
   std::atomic<int> asked = 0, run = 0;
   std::vector<dem::Job> jobs;
-  jobs.push_back({"elsewhere", 1, std::nullopt, [&](int, const RunControl&) { ADD_FAILURE(); }, [&] {
+  jobs.push_back({"elsewhere", 1, std::nullopt, [&](int, const RunControl&) { ADD_FAILURE(); },
+                  [&] {
                     ++asked;
                     return released ? dem::Claim::finished : dem::Claim::elsewhere;
                   }});
@@ -107,8 +108,8 @@ TEST(JobList, DoesOthersFirstWhileOneIsDoneElsewhere) {
                     ++run;
                     released = true;
                   }});
-  jobs.push_back({"found", 0, std::nullopt, [&](int, const RunControl&) { ADD_FAILURE(); },
-                  [] { return dem::Claim::finished; }});
+  jobs.push_back(
+      {"found", 0, std::nullopt, [&](int, const RunControl&) { ADD_FAILURE(); }, [] { return dem::Claim::finished; }});
   dem::run_jobs(jobs, 1, quiet.printer, {});
   EXPECT_EQ(run, 2);
   EXPECT_GE(asked, 2);

@@ -12,12 +12,12 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<PlannedTest> small_plan() {
-  return plan(spec_from_json(
-      parse_json(
-          R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70,
+  return plan(
+      spec_from_json(parse_json(
+                         R"({"particles": 32, "strain_rate": 20000, "rows": 20, "densities": [0.74], "nu_end": 0.70,
       "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "strain": 0.02, "role": "calibration"}, {"mode": "UNI", "strain": 0.01, "role": "validation"}]})",
-          "s.json", JsonSource::user),
-      "s.json"));
+                         "s.json", JsonSource::user),
+                     "s.json"));
 }
 
 class RunLists : public testing::TemporaryFolder {};
