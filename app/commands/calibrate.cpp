@@ -22,11 +22,10 @@ struct CalibrateOptions {
   std::vector<std::string> quantities;  ///< those that are wanted; none: all that the path has
   double max_cost = 0;                  ///< of everything together; 0: no limit [s]
   fit::Loss loss = fit::Loss::squares;
-  int starts = 1;  ///< of the coupled fits
-  double iso_from =
-      fit::CalibrationOptions{}.iso_nu_min;  ///< lowest volume fraction of ISO unloading that is fitted [-]
-  bool checks = false;                       ///< fits without one packing, likelihood profiles
-  bool wait = false;                         ///< for runs that others make
+  int starts = 1;       ///< of the coupled fits
+  double iso_from = fit::CalibrationOptions{}.iso_nu_min;  ///< lowest volume fraction of ISO unloading that is fitted [-]
+  bool checks = false;  ///< fits without one packing, likelihood profiles
+  bool wait = false;    ///< for runs that others make
   bool dry_run = false;
   std::string prior;  ///< prior.json of the errors, or "none"; empty: the built-in one
 };
@@ -115,10 +114,9 @@ Task declare_calibrate(CLI::App& command) {
       ->type_name("N")
       ->capture_default_str();
   command
-      .add_option(
-          "--iso-from", options->iso_from,
-          "lowest volume fraction of isotropic unloading that is fitted: somewhat above jamming, which friction "
-          "lowers")
+      .add_option("--iso-from", options->iso_from,
+                  "lowest volume fraction of isotropic unloading that is fitted: somewhat above jamming, which friction "
+                  "lowers")
       ->check(between(0.5, 0.8))
       ->type_name("NU")
       ->capture_default_str();
