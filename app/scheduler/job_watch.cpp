@@ -11,6 +11,7 @@
 
 #include "app/scheduler/slurm.hpp"
 #include "dem/runs/dataset_runs.hpp"
+#include "dem/runs/expected_cost.hpp"
 #include "dem/runs/task_list.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -19,38 +20,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tells the watch which runs are finished or being made since it was told last.
-class Progressing {
- public:
-  Progressing(const std::vector<dem::PlannedRun>& runs, fs::path store, Watch& watch)
-      : runs_(runs), store_(std::move(store)), watch_(watch), finished_(runs.size()) {
-    std::vector<double> work;
-    for (const dem::PlannedRun& run : runs)
-      work.push_back(run.is_preparation ? expected_work(run.test->preparation) : expected_work(*run.test));
-    watch_.begin(work, "particle-steps");
-  }
-  ~Progressing() { watch_.end(); }
-  Progressing(const Progressing&) = delete;
-  Progressing& operator=(const Progressing&) = delete;
-
-  void look() {
-    for (std::size_t i = 0; i < runs_.size(); ++i) {
-      if (finished_[i]) continue;
-      if (dem::is_finished(store_, runs_[i].key)) {
-        finished_[i] = true;
-        watch_.finished(i);
-      } else if (dem::maker_of(store_, runs_[i].key)) {
-        watch_.control(i, runs_[i].name, {}).report({runs_[i].name, 0, 0, "particle-steps"});
-      }
+/// Tells the watch which runs are finished or being made now; those in `told` were finished before.
+void look(const std::vector<dem::PlannedRun>& runs, const fs::path& store, std::vector<bool>& told, Watch& watch) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (told[i]) continue;
+    if (dem::is_finished(store, runs[i].key)) {
+      told[i] = true;
+      watch.finished(i);
+    } else if (dem::maker_of(store, runs[i].key)) {
+      watch.control(i, runs[i].name, {}).report({runs[i].name, 0, 0, "particle-steps"});
     }
   }
-
- private:
-  const std::vector<dem::PlannedRun>& runs_;
-  fs::path store_;
-  Watch& watch_;
-  std::vector<bool> finished_;
-};
+}
 
 /// The exit code that the calibration's script has left; nothing when it was never started.
 std::optional<int> exit_code_in(const fs::path& tasks) {
@@ -68,23 +49,28 @@ ExitCode watch_jobs(const dem::Spec& spec, const fs::path& folder, const std::ve
   const fs::path tasks = folder / dem::kTasksFolder;
   const std::string names = fmt::format("{}", fmt::join(jobs, ", "));
   session.watch.log(fmt::format("jobs {}; their logs are in {}", names, tasks.string()));
-  const std::chrono::milliseconds pause(2000 + runs.size());
+  std::vector<double> work;
+  for (const dem::PlannedRun& run : runs) work.push_back(dem::expected_particle_steps(run));
+  session.watch.begin(work, "particle-steps");
+  std::vector<bool> told(runs.size());
   std::mutex mutex;
   std::condition_variable_any never;
-  Progressing progress(runs, folder / "runs", session.watch);
-  QueueState before;
-  for (QueueState now; !now.known || now.running + now.waiting > 0;) {
+  QueueState queue;
+  while (!queue.known || queue.running + queue.waiting > 0) {
     std::unique_lock lock(mutex);
-    never.wait_for(lock, session.stop, pause, [] { return false; });
-    if (session.stop.stop_requested())
-      throw Interrupted(fmt::format("interrupted; jobs {} go on, grainlaw calibrate {} -o {} --wait waits for them",
-                                    names, (tasks / "spec.json").string(), folder.string()));
-    progress.look();
-    now = queue_state(jobs);
-    if (now.known && (now.running != before.running || now.waiting != before.waiting))
+    never.wait_for(lock, session.stop, std::chrono::milliseconds(2000 + runs.size()), [] { return false; });
+    if (session.stop.stop_requested()) break;
+    look(runs, folder / "runs", told, session.watch);
+    const QueueState now = queue_state(jobs);
+    if (!now.known) continue;
+    if (now.running != queue.running || now.waiting != queue.waiting)
       session.watch.log(fmt::format("queue: {} running, {} waiting", now.running, now.waiting));
-    if (now.known) before = now;
+    queue = now;
   }
+  session.watch.end();
+  if (session.stop.stop_requested())
+    throw Interrupted(fmt::format("interrupted; jobs {} go on, grainlaw calibrate {} -o {} --wait waits for them",
+                                  names, (tasks / "spec.json").string(), folder.string()));
   const auto code = exit_code_in(tasks);
   if (!code)
     throw Error(fmt::format("jobs {} are over without a calibration; see the logs in {}, the same command goes on",
