@@ -58,7 +58,7 @@ Task declare_submit(CLI::App& command) {
   const auto options = std::make_shared<SubmitOptions>();
   SlurmOptions& slurm = options->slurm;
   const auto word = [&](const char* name, auto& value, const char* type, const char* description) {
-    command.add_option(name, value, description)->check(one_word())->type_name(type);
+    command.add_option(name, value, description)->check(one_word())->type_name(type)->allow_extra_args(false);
   };
   command.add_option("DIR", options->folder, "folder that grainlaw runs --array has written to")
       ->required()

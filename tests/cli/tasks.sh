@@ -103,7 +103,7 @@ diff <(bare alone/parameters.json) <(bare shared/parameters.json) || fail "two c
 dir="it's a \$(folder)"
 "$grainlaw" runs spec.json -o "$dir" --array 3 >/dev/null
 "$grainlaw" task "$dir" 2 --quiet >/dev/null
-"$grainlaw" submit "$dir" --slurm --dry-run --account geo --time 1:00:00 --sbatch=--mem=1G --json >submit.json
+"$grainlaw" submit --slurm --dry-run --account geo --time 1:00:00 --sbatch=--mem=1G --sbatch=--qos=low "$dir" --json >submit.json
 [[ $(jq -c '[.tasks, .jobs, (.scripts | length)]' submit.json) == '[[1,3],[],2]' ]] || fail "submit: $(cat submit.json)"
 for script in "$dir"/tasks/*.sbatch; do bash -n "$script" || fail "$script"; done
 grep -q '^#SBATCH --array=1,3$' "$dir/tasks/tasks.sbatch" && grep -q '^#SBATCH --account=geo$' "$dir/tasks/tasks.sbatch" &&
