@@ -1,6 +1,7 @@
 # Sourced by cluster.sh: many runs on a Slurm of two nodes that is started here, all in $out/slurm, and ended by the ids of its daemons.
 #   long_lists   what listing 10^4 runs takes
-#   slurm        a calibration in an array of 8 tasks: tasks killed, a node lost, time limits hit, the controller restarted
+#   slurm        a calibration in an array of 8 tasks: tasks killed, a node lost, time limits hit, the controller restarted; and what a
+#                task takes beyond its runs
 
 grainlaw=$PWD/$bin/grainlaw
 seconds_of() { local TIMEFORMAT=%R; { time "$@" >/dev/null 2>&1; } 2>&1; }
@@ -93,17 +94,21 @@ on_node() { tr '\0' '\n' <"/proc/$1/environ" 2>/dev/null | grep -qx "SLURMD_NODE
 
 # All of a node dies at once: its daemon, the one of its job, the job.
 lose_node() { # folder node
-  local pid ancestor
+  local pid ancestor lost=
+  for ((i = 0; i < 600; ++i)); do
+    lost=$(makers "$1" | while read -r pid _; do if on_node "$pid" "$2"; then echo "$pid"; fi; done)
+    [[ -n $lost ]] && break
+    sleep 0.1
+  done
   end_by_pid "$2" -KILL
-  while read -r pid _; do
-    on_node "$pid" "$2" || continue
+  for pid in $lost; do
     for ((i = 0; i < 3; ++i)); do  # grainlaw, the script, slurmstepd
       ancestor=$(awk '/^PPid/ { print $2 }' "/proc/$pid/status" 2>/dev/null || echo 1)
       kill -KILL "$pid" 2>/dev/null || true
       ((ancestor > 1)) || break
       pid=$ancestor
     done
-  done < <(makers "$1")
+  done
 }
 
 # Until so many runs are finished, or the watcher has ended.
@@ -124,25 +129,33 @@ kill_one() { # folder
 }
 
 slurm() {
-  local folder=$out/array alone=$out/alone code=0 runs key
+  local folder=$out/array alone=$out/alone code=0 runs seconds
   if ! command -v slurmctld munged slurmd >/dev/null; then
     figure slurm.installed missing stated
     return
   fi
   rm -rf "$folder" "$alone"
-  # tasks of some 40 s: Slurm looks for time limits twice a minute
+  # tasks of some 25 s: Slurm looks for time limits twice a minute, and warns a minute before, so half a minute after the start
   jq -n '{particles: 3000, seeds: [range(1; 6)], strain_rate: 200, densities: [0.70, 0.74, 0.78],
     tests: [{mode: "ISO", role: "calibration"}, {mode: "D2", role: "calibration"}, {mode: "UNI", density: 0.70, role: "validation"}]}' >"$out/spec.json"
   "$grainlaw" calibrate "$out/spec.json" -o "$alone" --threads 2 --quiet --json >"$out/alone.json"
   runs=$(jq .runs "$out/alone.json")
   figure slurm.alone_seconds "$(jq .seconds "$out/alone.json")" stated
 
+  # one task with nobody else: its time, that of the process included, beyond that of its runs
+  rm -rf "$out/one"
+  "$grainlaw" runs "$out/spec.json" -o "$out/one" --array 8 >/dev/null
+  seconds=$(seconds_of "$grainlaw" task "$out/one" 2 --threads 1)
+  jq -s 'map(.cost.seconds) | add' "$out/one/runs"/*/run.json | awk -v taken="$seconds" '{ printf "%.3f", 100 * (taken / $1 - 1) }' >"$out/overhead.txt"
+  figure slurm.task_seconds "$seconds" ">=5"
+  figure slurm.overhead_percent "$(cat "$out/overhead.txt")" "<=2"
+
   start_slurm
   RANDOM=34
   local killed=0 begun=$SECONDS
   "$grainlaw" runs "$out/spec.json" -o "$folder" --array 8 --json >"$out/dealt.json"
   figure slurm.tasks "$(jq .tasks "$out/dealt.json")" ">=8"
-  "$grainlaw" submit "$folder" --slurm --time 2 --json >"$out/submitted.json" 2>"$out/submit.log" &
+  "$grainlaw" submit "$folder" --slurm --time 1 --json >"$out/submitted.json" 2>"$out/submit.log" &
   watcher=$!
   (while kill -0 $watcher 2>/dev/null; do find "$folder/runs" -name run.json -printf '%h %i\n' 2>/dev/null; sleep 0.5; done) >"$out/seen.txt" &
 
@@ -178,15 +191,4 @@ slurm() {
   find "$folder/runs" -name run.json -printf '%h %i\n' >>"$out/seen.txt"
   figure slurm.simulated_twice "$(sort -u "$out/seen.txt" | cut -d' ' -f1 | uniq -d | wc -l)" "<=0"
   figure slurm.locks_left "$(find "$folder" -name '*.lock' -o -name '.lock-*' | wc -l)" "<=0"
-
-  # of tasks that were started once and made all of their runs: their time beyond that of the runs
-  for task in 1 2 3 4 5 6 7 8; do
-    log=$folder/tasks/task-$task.log
-    [[ $(grep -c '^job ' "$log") == 1 ]] && grep -q ', 0 found finished, 0 made by others' "$log" || continue
-    jq -r --argjson task $task '.list[] | select(.task == $task).key' "$out/dealt.json" |
-      while read -r key; do jq .cost.seconds "$folder/runs/$key/run.json"; done |
-      awk -v taken="$(sed -nE "s/^$task: .* ([0-9.]+) s$/\1/p" "$log")" '{ runs += $1 } END { print taken, runs }'
-  done >"$out/overhead.txt"
-  figure slurm.overhead_tasks "$(wc -l <"$out/overhead.txt")" ">=1"
-  figure slurm.overhead_percent "$(awk '{ taken += $1; runs += $2 } END { if (runs) printf "%.3f", 100 * (taken / runs - 1); else print "missing" }' "$out/overhead.txt")" "<=2"
 }
