@@ -54,7 +54,12 @@ code=0
 wait "$pid" || code=$?
 while kill -0 "$pid" 2>/dev/null; do code=0; wait "$pid" || code=$?; done  # the signal ends the waiting first
 if ((code == 130 || code > 128 && ${{SLURM_RESTART_COUNT:-0}} < 10)); then
-  for try in 1 2 3 4 5; do scontrol requeue "$job" && exit 0 || sleep 5; done
+  for try in 1 2 3 4 5; do  # the controller may be away; a job that was cancelled is not running any more
+    state=$(squeue --noheader --jobs="$job" --format=%T) || state=unknown
+    [[ $state == RUNNING ]] && scontrol requeue "$job" && exit 0
+    [[ $state == RUNNING || $state == unknown ]] || break
+    sleep 5
+  done
 fi
 {end}exit "$code"
 )script";
