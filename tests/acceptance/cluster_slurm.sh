@@ -3,7 +3,7 @@
 #   slurm        a calibration in an array of 8 tasks: tasks killed, a node lost, time limits hit, the controller restarted; and what a
 #                task takes beyond its runs
 
-grainlaw=$PWD/$bin/grainlaw
+grainlaw=$(realpath "$bin/grainlaw")
 seconds_of() { local TIMEFORMAT=%R; { time "$@" >/dev/null 2>&1; } 2>&1; }
 
 long_lists() {
