@@ -67,7 +67,7 @@ finished >before
 rm -r "out/runs/$(key D2-0.70-s1).lock"
 for pid in $tasks; do wait "$pid" || fail "a task ended with $?: $(cat task-*.log)"; done
 wait $waiting || fail "the calibration that waits: $(cat waited.log)"
-grep -q 'goes on from the checkpoint at step' task-2?.log || fail "the killed run began anew: $(cat task-2?.log)"
+cat task-*.log | grep -q 'goes on from the checkpoint at step' || fail "the killed run began anew: $(cat task-*.log)"
 [[ $(made task-*.json) == 12 ]] || fail "$(made task-*.json) runs were made, not 12"
 [[ -z $(finished | comm -13 - before) ]] || fail "a finished run was made again"
 [[ $(jq '.runs_found' waited.json) != 12 ]] || fail "the calibration did not wait"
