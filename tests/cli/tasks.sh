@@ -61,13 +61,13 @@ for ((i = 0; i < 1200; ++i)); do
   (( $(finished | wc -l) == 11 )) && break
   sleep 0.05
 done
-cat task-*.log | grep -q 'D2-0.70-s1: is made by process 11 on node7' || fail "nobody waits for the other machine: $(cat task-*.log)"
+grep -q 'D2-0.70-s1: is made by process 11 on node7' task-*.log || fail "nobody waits for the other machine: $(cat task-*.log)"
 [[ ! -e out/runs/$(key D2-0.70-s1)/run.json && ! -e out/parameters.json ]] || fail "a run was made against its lock"
 finished >before
 rm -r "out/runs/$(key D2-0.70-s1).lock"
 for pid in $tasks; do wait "$pid" || fail "a task ended with $?: $(cat task-*.log)"; done
 wait $waiting || fail "the calibration that waits: $(cat waited.log)"
-cat task-*.log | grep -q 'goes on from the checkpoint at step' || fail "the killed run began anew: $(cat task-*.log)"
+grep -q 'goes on from the checkpoint at step' task-*.log || fail "the killed run began anew: $(cat task-*.log)"
 [[ $(made task-*.json) == 12 ]] || fail "$(made task-*.json) runs were made, not 12"
 [[ -z $(finished | comm -13 - before) ]] || fail "a finished run was made again"
 [[ $(jq '.runs_found' waited.json) != 12 ]] || fail "the calibration did not wait"
