@@ -90,7 +90,7 @@ end_slurm() {
 makers() { find "$1/runs" -path '*.lock/*' -printf '%f %h\n' 2>/dev/null | sed -nE 's/^[^,]*,([0-9]+),[^ ]* (.*)\.lock$/\1 \2/p'; }
 
 # Whether a process runs below one of Slurm's on this node (n1, n2).
-on_node() { tr '\0' '\n' <"/proc/$1/environ" 2>/dev/null | grep -qx "SLURMD_NODENAME=$2"; }
+on_node() { { tr '\0' '\n' <"/proc/$1/environ"; } 2>/dev/null | grep -x "SLURMD_NODENAME=$2" >/dev/null; }
 
 # All of a node dies at once: its daemon, the one of its job, the job.
 lose_node() { # folder node
