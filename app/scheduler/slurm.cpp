@@ -47,7 +47,7 @@ constexpr const char* kScript = R"script(#!/bin/bash
 job=${{SLURM_ARRAY_JOB_ID:+${{SLURM_ARRAY_JOB_ID}}_}}${{SLURM_ARRAY_TASK_ID:-$SLURM_JOB_ID}}
 echo "job $job on $(hostname) ($SLURMD_NODENAME), start $((${{SLURM_RESTART_COUNT:-0}} + 1)), $(date)"
 # grainlaw keeps a checkpoint on TERM and exits with 130
-trap 'kill -TERM "$pid"' TERM
+trap 'kill -TERM "$pid" 2>/dev/null' TERM
 {command} --threads {threads} &
 pid=$!
 code=0

@@ -92,23 +92,24 @@ makers() { find "$1/runs" -path '*.lock/*' -printf '%f %h\n' 2>/dev/null | sed -
 # Whether a process runs below one of Slurm's on this node (n1, n2).
 on_node() { { tr '\0' '\n' <"/proc/$1/environ"; } 2>/dev/null | grep -x "SLURMD_NODENAME=$2" >/dev/null; }
 
-# All of a node dies at once: its daemon, the one of its job, the job.
+# All of a node dies at once: its daemon, then that of its job, which could still report, the script and grainlaw.
 lose_node() { # folder node
-  local pid ancestor lost=
+  local pid chain
   for ((i = 0; i < 600; ++i)); do
-    lost=$(makers "$1" | while read -r pid _; do if on_node "$pid" "$2"; then echo "$pid"; fi; done)
-    [[ -n $lost ]] && break
+    chain=
+    for pid in $(makers "$1" | cut -d' ' -f1); do
+      on_node "$pid" "$2" || continue
+      for _ in grainlaw script slurmstepd; do
+        ((pid > 1)) && chain="$pid $chain"
+        pid=$(awk '/^PPid/ { print $2 }' "/proc/$pid/status" 2>/dev/null || echo 1)
+      done
+    done
+    [[ -n $chain ]] && break
     sleep 0.1
   done
   end_by_pid "$2" -KILL
-  for pid in $lost; do
-    for ((i = 0; i < 3; ++i)); do  # grainlaw, the script, slurmstepd
-      ancestor=$(awk '/^PPid/ { print $2 }' "/proc/$pid/status" 2>/dev/null || echo 1)
-      kill -KILL "$pid" 2>/dev/null || true
-      ((ancestor > 1)) || break
-      pid=$ancestor
-    done
-  done
+  # shellcheck disable=SC2086
+  kill -KILL $chain 2>/dev/null || true
 }
 
 # Until so many runs are finished, or the watcher has ended.
