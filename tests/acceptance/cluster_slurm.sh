@@ -131,7 +131,8 @@ kill_one() { # folder
 
 slurm() {
   local folder=$out/array alone=$out/alone code=0 runs seconds
-  if ! command -v slurmctld munged slurmd >/dev/null; then
+  PATH=$PATH:/usr/sbin
+  if ! { command -v munged && command -v slurmctld && command -v slurmd; } >/dev/null; then
     figure slurm.installed missing stated
     return
   fi
