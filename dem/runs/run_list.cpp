@@ -78,15 +78,14 @@ Job awaited(const PlannedRun& run, const RunStore& store, std::atomic<std::size_
   return job;
 }
 
-/// Says which of the jobs with work others make and which nobody.
-void name_missing(const std::vector<PlannedRun>& runs, const std::vector<Job>& jobs, const RunStore& store,
-                  Watch& watch) {
+/// Says which runs others make and which nobody.
+void name_missing(const std::vector<PlannedRun>& runs, const RunStore& store, Watch& watch) {
   constexpr std::size_t kNamed = 8;
   std::vector<std::string> made, not_begun;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (jobs[i].work == 0) continue;
-    const auto maker = maker_of(store.root(), runs[i].key);
-    (maker ? made : not_begun).push_back(maker ? fmt::format("{} ({})", runs[i].name, *maker) : runs[i].name);
+  for (const PlannedRun& run : runs) {
+    if (is_finished(store.root(), run.key)) continue;
+    const auto maker = maker_of(store.root(), run.key);
+    (maker ? made : not_begun).push_back(maker ? fmt::format("{} ({})", run.name, *maker) : run.name);
   }
   const auto say = [&](const char* what, std::vector<std::string> names) {
     if (names.empty()) return;
@@ -158,8 +157,16 @@ void make_runs(const std::vector<PlannedRun>& runs, const RunStore& store, const
                                                      : job_of(run, store, execution, others));
     }
   }
-  if (missing == MissingRuns::awaited) name_missing(runs, jobs, store, execution.watch);
-  run_jobs(jobs, execution.threads, execution.watch, execution.stop);
+  const auto name_awaited = [&] {
+    if (missing == MissingRuns::awaited) name_missing(runs, store, execution.watch);
+  };
+  name_awaited();
+  try {
+    run_jobs(jobs, execution.threads, execution.watch, execution.stop);
+  } catch (const Interrupted&) {
+    name_awaited();
+    throw;
+  }
   counts.others += others;
 }
 

@@ -47,7 +47,8 @@ struct RunCounts {
   std::size_t others = 0;  ///< of those, finished meanwhile by other processes
 };
 
-/// Returns when all runs are in the store; nothing else changes. Those that are waited for are named to the watch.
+/// Returns when all runs are in the store; nothing else changes. Those that are awaited are named to the watch, at the
+/// begin and when interrupted.
 void make_runs(const std::vector<PlannedRun>& runs, const RunStore& store, const Execution& execution,
                RunCounts& counts, MissingRuns missing = MissingRuns::simulated);
 

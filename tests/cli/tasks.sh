@@ -92,6 +92,10 @@ code=0
 wait $pid || code=$?
 [[ $code == 130 && -z $(ls -d named/runs/*.lock 2>/dev/null) ]] || fail "SIGTERM: $code, $(ls named/runs), $(cat log)"
 
+# what a calibration waits for is named when it is interrupted, too; it leaves nothing
+timeout --signal INT 2 "$grainlaw" calibrate spec.json -o nothing --wait 2>log || true
+[[ $(grep -c '12 of 12 runs are made by nobody now: preparation-s1, ' log) == 2 && ! -e nothing ]] || fail "--wait: $(cat log)"
+
 # two calibrations in one folder share the runs, and each ends with the whole result
 for who in a b; do calibrate -o shared --threads 1 --json >"shared-$who.json" 2>"shared-$who.log" & done
 wait %?shared-a 2>/dev/null || true
