@@ -5,18 +5,34 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 
 #include "dem/runs/job_list.hpp"
 #include "model/files/output.hpp"
 #include "model/vocabulary/error.hpp"
+#include "model/vocabulary/fields.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
 double expected_work(const PlannedRun& run) {
   return run.is_preparation ? expected_work(run.test->preparation) : expected_work(*run.test);
+}
+
+/// Whether all fields are equal.
+template <HasFields T>
+bool same(const T& a, const T& b) {
+  bool equal = true;
+  for_each_field<T>([&](const auto& field) {
+    const auto &of_a = std::invoke(field.access, a), &of_b = std::invoke(field.access, b);
+    if constexpr (HasFields<std::remove_cvref_t<decltype(of_a)>>)
+      equal = equal && same(of_a, of_b);
+    else
+      equal = equal && of_a == of_b;
+  });
+  return equal;
 }
 
 /// With the lock of the run, which is given back at the end. A run that others have taken over is left to them.
@@ -111,7 +127,8 @@ std::vector<PlannedRun> runs_of(const std::vector<PlannedTest>& tests) {
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const PlannedTest& test = tests[i];
     if (test.given) continue;
-    preparations[i] = preparation_key(test.preparation);
+    const bool as_before = i > 0 && !tests[i - 1].given && same(tests[i - 1].preparation, test.preparation);
+    preparations[i] = as_before ? preparations[i - 1] : preparation_key(test.preparation);  // digests take time
     if (!index.try_emplace(preparations[i], runs.size()).second) continue;
     runs.push_back({preparations[i], fmt::format("preparation-s{}", test.preparation.packing.seed), &test, true, {}});
   }
