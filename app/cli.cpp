@@ -40,12 +40,15 @@ struct Common {
 };
 
 void add_common(CLI::App& command, Common& common) {
+  command.add_flag("--json", common.json, "result on standard output as JSON");
+  command.add_flag("--quiet", common.quiet, "no progress, no warnings");
+}
+
+void add_threads(CLI::App& command, Common& common) {
   command.add_option("--threads", common.threads, "threads of all runs together; results do not depend on it")
       ->check(between(1, 1024))
       ->type_name("N")
       ->default_str("all cores");
-  command.add_flag("--json", common.json, "result on standard output as JSON");
-  command.add_flag("--quiet", common.quiet, "no progress, no warnings");
 }
 
 /// Of the commands that run DEM.
@@ -79,6 +82,10 @@ constexpr std::array kCommands{
     Command{"import", "series and particles of others as a data set", declare_import, Kind::computes},
     Command{"calibrate", "packings and element tests of a spec, then the law's parameters", declare_calibrate,
             Kind::simulates},
+    Command{"runs", "which runs a calibration needs and which are missing; deals them out to tasks", declare_runs,
+            Kind::watches},
+    Command{"task", "the runs of one task, or single runs, on any machine", declare_task, Kind::simulates},
+    Command{"submit", "the tasks and the calibration as jobs of Slurm", declare_submit, Kind::watches},
     Command{"predict", "the calibrated law along a strain path, and DEM of the same path", declare_predict,
             Kind::simulates},
     Command{"export", "states, runs and data sets as files of other programs", declare_export, Kind::computes},
@@ -107,6 +114,7 @@ void add(CLI::App& app, const Command& command, Common& common, Task& chosen) {
     add_checkpoints(*added, common);
     add_lammps(*added, common);
   }
+  if (command.kind >= Kind::computes) add_threads(*added, common);
   if (command.kind != Kind::says) add_common(*added, common);
   added->callback([task, &chosen] { chosen = task; });
 }

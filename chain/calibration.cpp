@@ -171,10 +171,10 @@ fit::CalibrationOptions fit_options_of(const CalibrationInput& input, const Exec
 
 Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const fs::path& output,
                           const Execution& execution, dem::RunCounts& counts,
-                          const std::function<void()>& before_writing) {
+                          const std::function<void()>& before_writing, dem::MissingRuns missing) {
   const dem::RunStore store(output, "runs");
   const std::vector<dem::PlannedTest> tests = plan(spec);
-  dem::make_runs(tests, store, execution, counts);
+  dem::make_runs(dem::runs_of(tests), store, execution, counts, missing);
   if (before_writing) before_writing();
   Dataset dataset = dem::collect_runs(tests, Json(dem::spec_to_json(spec)), folder, store, execution);
   dem::write_pictures(folder, tests, store, execution.threads);
@@ -183,12 +183,14 @@ Dataset simulate_data_set(const dem::Spec& spec, const fs::path& folder, const f
 }
 
 CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOptions& options, const fs::path& output,
-                            const Execution& execution) {
+                            const Execution& execution, dem::MissingRuns missing) {
   if (fs::exists(output)) make_output_folder(output);  // refuses what is no folder before any work
   if (input.spec) input.spec->coupling = to_string(options.coupling);
   const OrderedJson spec = input.spec ? dem::spec_to_json(*input.spec) : OrderedJson();
+  std::unique_ptr<ProcessLock> writing;
   // Earlier results stay until there is something to replace them with.
   const auto replace_results = [&] {
+    writing = dem::lock_results(output, execution);
     remove_results_of_others(output, input.dataset ? "" : json_text(spec));
     if (input.spec) write_json(output / "spec.resolved.json", spec);
   };
@@ -206,12 +208,12 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
     dem::adopt_pictures(input.dataset_folder, folder);
     log_warnings(result.dataset, execution.watch);
   } else {
-    dem::require_engines(plan(*input.spec), output, execution);
+    if (missing == dem::MissingRuns::simulated) dem::require_engines(plan(*input.spec), output, execution);
     const fs::path folder = output / "dataset";
     result.dataset = without_empty_folders({folder, output}, [&] {
       make_output_folder(output);
       make_subfolder(output, "dataset");
-      return simulate_data_set(*input.spec, folder, output, execution, result.counts, replace_results);
+      return simulate_data_set(*input.spec, folder, output, execution, result.counts, replace_results, missing);
     });
     stopwatch = {};
     all = fitted(result.dataset, folder, options, execution);

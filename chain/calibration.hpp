@@ -41,14 +41,17 @@ struct CalibrationResult {
 
 /// Simulates what is not finished yet, fits, and writes the folder `output`. `options.coupling` overrides the spec's.
 /// Throws InvalidInput, Error, Interrupted (then what was finished is kept and found again). A stage of the fit that
-/// does not converge is said in `calibration`, not thrown.
+/// does not converge is said in `calibration`, not thrown. Several processes may calibrate into one folder: they share the
+/// runs and write their results one after another.
 CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOptions& options,
-                            const std::filesystem::path& output, const Execution& execution);
+                            const std::filesystem::path& output, const Execution& execution,
+                            dem::MissingRuns missing = dem::MissingRuns::simulated);
 
 /// The first part of it: simulates the tests of `spec` into `folder`, with the runs in `output`/runs. `before_writing` is called
 /// when all runs are there and nothing else has changed yet.
 Dataset simulate_data_set(const dem::Spec& spec, const std::filesystem::path& folder,
                           const std::filesystem::path& output, const Execution& execution, dem::RunCounts& counts,
-                          const std::function<void()>& before_writing = {});
+                          const std::function<void()>& before_writing = {},
+                          dem::MissingRuns missing = dem::MissingRuns::simulated);
 
 }  // namespace grainlaw::chain

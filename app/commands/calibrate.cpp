@@ -26,6 +26,7 @@ struct CalibrateOptions {
   double iso_from =
       fit::CalibrationOptions{}.iso_nu_min;  ///< lowest volume fraction of ISO unloading that is fitted [-]
   bool checks = false;                       ///< fits without one packing, likelihood profiles
+  bool wait = false;                         ///< for runs that others make
   bool dry_run = false;
   std::string prior;  ///< prior.json of the errors, or "none"; empty: the built-in one
 };
@@ -50,6 +51,8 @@ ExitCode calibrate_to_target(const CalibrateOptions& options, chain::Calibration
 }
 
 ExitCode calibrate(const CalibrateOptions& options, Session& session) {
+  if (options.wait && (options.target_error || !options.dataset.empty()))
+    throw InvalidInput("calibrate: --wait waits for the runs of SPEC; leave --target-error and --dataset out");
   const chain::CalibrationInput input = chain::read_calibration_input(options.spec, options.dataset);
   fit::CalibrationOptions fit_options = chain::fit_options_of(input, session);
   fit_options.loss = options.loss;
@@ -65,7 +68,8 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   if (options.dry_run)
     return say_forecast((options.dataset.empty() ? options.spec : options.dataset).string(),
                         chain::forecast(input, options.output, session), session);
-  const chain::CalibrationResult result = chain::calibrate(input, fit_options, options.output, session);
+  const auto missing = options.wait ? dem::MissingRuns::awaited : dem::MissingRuns::simulated;
+  const chain::CalibrationResult result = chain::calibrate(input, fit_options, options.output, session, missing);
   print_result(session.json ? json_text(summary_of(result, options.output, session))
                             : text_of(result, options.output, session));
   return result.calibration.law.converged ? ExitCode::ok : ExitCode::not_converged;
@@ -79,6 +83,8 @@ Task declare_calibrate(CLI::App& command) {
   command.add_option("-o,--output", options->output, "folder of the calibration")->required()->type_name("DIR");
   command.add_option("--dataset", options->dataset, "fit this data set without running DEM")->type_name("DIR");
   add_dry_run(command, options->dry_run);
+  command.add_flag("--wait", options->wait,
+                   "simulate nothing: wait for runs that others make, and name those that are missing");
   CLI::Option* target = command.add_option(
       "--target-error", options->target_error,
       "plan the cheapest runs after which the prediction along --for is known to this, e.g. 0.02: half width of its "

@@ -16,12 +16,16 @@ struct Command {
   const char* name;
   const char* description;
   Task (*declare)(CLI::App&);
-  enum class Kind { says, computes, simulates } kind;  ///< `says`: no options of work; `simulates`: DEM
+  /// `says`: no options of work; `watches`: works on one thread; `simulates`: DEM
+  enum class Kind { says, watches, computes, simulates } kind;
 };
 
 Task declare_simulate(CLI::App& command);
 Task declare_import(CLI::App& command);
 Task declare_calibrate(CLI::App& command);
+Task declare_runs(CLI::App& command);
+Task declare_task(CLI::App& command);
+Task declare_submit(CLI::App& command);
 Task declare_export(CLI::App& command);
 Task declare_predict(CLI::App& command);
 Task declare_report(CLI::App& command);

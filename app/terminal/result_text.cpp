@@ -116,6 +116,7 @@ OrderedJson summary_of(const chain::CalibrationResult& result, const fs::path& o
           {"tests", result.dataset.tests.size()},
           {"runs", result.counts.runs},
           {"runs_found", result.counts.found},
+          {"runs_of_others", result.counts.others},
           {"dataset_digest", result.dataset.digest},
           {"seconds", session.stopwatch.seconds()},
           {"peak_memory_MB", peak_memory_megabytes()}};

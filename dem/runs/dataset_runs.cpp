@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "dem/lammps/program.hpp"
@@ -17,34 +16,6 @@ namespace grainlaw::dem {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string key_of(const PlannedTest& test) {
-  return test.branch_of_preparation ? preparation_key(test.preparation) : test_key(test);
-}
-
-/// Preparations first, then the tests in order; each key once.
-std::vector<Job> jobs_for(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,
-                          RunCounts& counts) {
-  std::vector<Job> jobs;
-  std::map<std::string, std::size_t> index;
-  const auto add = [&](const std::string& key, Job job) {
-    ++counts.runs;
-    if (job.work == 0) ++counts.found;
-    index[key] = jobs.size();
-    jobs.push_back(std::move(job));
-  };
-  for (const PlannedTest& test : tests) {
-    const PreparationOptions& o = test.preparation;
-    const std::string key = preparation_key(o);
-    if (!index.contains(key)) add(key, preparation_job(store, o, fmt::format("seed {}", o.packing.seed), execution));
-  }
-  for (const PlannedTest& test : tests) {
-    const std::string key = key_of(test);
-    if (index.contains(key)) continue;
-    add(key, test_job(store, test, test.name, index.at(preparation_key(test.preparation)), execution));
-  }
-  return jobs;
-}
 
 std::set<std::string> series_listed(const fs::path& folder) {
   std::set<std::string> names;
@@ -138,30 +109,34 @@ void require_engines(const std::vector<PlannedTest>& tests, const fs::path& pare
     if (test.probes || test.frames > 0)
       throw InvalidInput(fmt::format("{}{}: belong to the engine 'grainlaw'; remove them from what LAMMPS runs",
                                      test.name.empty() ? "" : test.name + ": ", test.probes ? "probes" : "frames"));
-    asked = asked || !is_finished(parent / "runs", key_of(test));
+    asked = asked || !is_finished(parent / "runs", run_of(test));
   }
   if (asked) find_lammps(execution.lammps, execution.launcher);
 }
 
-void make_runs(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,
-               RunCounts& counts) {
-  run_jobs(jobs_for(tests, store, execution, counts), execution.threads, execution.watch, execution.stop);
+std::unique_ptr<ProcessLock> lock_results(const fs::path& folder, const Execution& execution) {
+  make_output_folder(folder);  // another may have left nothing and taken it along
+  remove_dead_locks(folder);
+  return ProcessLock::wait(folder / ".results.lock", execution.stop, [&](const std::string& owner) {
+    execution.watch.log(fmt::format("waits for {}, which writes results to {}", owner, folder.string()));
+  });
 }
 
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
                     const RunStore& store, const Execution& execution, RunCounts& counts) {
-  make_runs(tests, store, execution, counts);
+  make_runs(runs_of(tests), store, execution, counts);
   return collect_runs(tests, spec, folder, store, execution);
 }
 
 Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
                      const RunStore& store, const Execution& execution) {
+  const auto lock = lock_results(folder, execution);
   std::set<std::string> stale = series_listed(folder), stale_probes = stale;
   Dataset dataset;
   dataset.spec = spec;
   for (const PlannedTest& planned : tests) {
     DatasetTest test;
-    test.run = key_of(planned);
+    test.run = run_of(planned);
     const Json record = store.find(test.run).value();
     test.record = {planned.name, planned.role, planned.path, packing_from_record(record), {}};
     test.cost = cost_from_record(record);

@@ -3,23 +3,17 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "dem/runs/runs.hpp"
+#include "dem/runs/run_list.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/execution.hpp"
 #include "model/files/path_file.hpp"
 
 namespace grainlaw::dem {
-
-/// One test on one packing.
-struct PlannedTest : TestSetup {
-  std::string name;  ///< of the record
-  Role role = Role::calibration;
-  bool branch_of_preparation = false;  ///< ISO: the series that the preparation itself leaves
-};
 
 /// All tests of the spec on all seeds, in the order of the spec within each seed.
 std::vector<PlannedTest> plan(const Spec& spec);
@@ -41,22 +35,15 @@ std::vector<PlannedTest> plan(const Spec& spec, const PathFile& path, const std:
 void require_engines(const std::vector<PlannedTest>& tests, const std::filesystem::path& parent,
                      const Execution& execution);
 
-/// What make_runs did.
-struct RunCounts {
-  std::size_t runs = 0;   ///< preparations and tests
-  std::size_t found = 0;  ///< of those, finished before
-};
-
-/// Runs what is not in the store yet; nothing else changes.
-void make_runs(const std::vector<PlannedTest>& tests, const RunStore& store, const Execution& execution,
-               RunCounts& counts);
+/// The lock of the results in `folder`, which are written as a whole; waits for another process that writes there.
+std::unique_ptr<ProcessLock> lock_results(const std::filesystem::path& folder, const Execution& execution);
 
 /// Copies the series of finished runs to `folder` and writes dataset.json there last; series that an earlier dataset.json listed
 /// and this one does not are removed. Returns what read_dataset would read there.
 Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, const std::filesystem::path& folder,
                      const RunStore& store, const Execution& execution);
 
-/// Both.
+/// Makes the runs first.
 Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, const std::filesystem::path& folder,
                     const RunStore& store, const Execution& execution, RunCounts& counts);
 

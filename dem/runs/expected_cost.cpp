@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
 #include <thread>
 
 #include "dem/runs/feasibility.hpp"
@@ -26,6 +25,9 @@ constexpr std::int64_t kMeasuredSpheres = 10000;
 constexpr double kMeasuredDensity = 0.72;
 
 double spheres(const PreparationOptions& o) { return static_cast<double>(o.packing.particles); }
+double spheres_of(const TestSetup& test) {
+  return test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
+}
 double kept(const PreparationOptions& o) {
   return static_cast<double>(o.keep_loading.size() + o.keep_unloading.size());
 }
@@ -34,24 +36,11 @@ double frames(const TestSetup& test) {
   return test.frames > 0 ? static_cast<double>(test.path.segments.size()) * test.frames + 1 : 0;
 }
 
-void add_preparation(const PreparationOptions& o, const fs::path& runs, ExpectedCost& cost) {
-  ++cost.runs;
-  cost.bytes += kBytesPerRecord + 2 * o.rows * kBytesPerRow + kept(o) * spheres(o) * kBytesPerKept;
-  if (is_finished(runs, preparation_key(o)))
-    ++cost.found;
-  else
-    cost.particle_steps += expected_work(o) + (kept(o) + 1) * spheres(o) * kPassesPerRelaxation;
-}
-
-void add_test(const PlannedTest& test, const fs::path& runs, ExpectedCost& cost) {
-  ++cost.runs;
-  const double N = test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
-  const double rows = static_cast<double>(test.path.segments.size()) * test.rows + 1;
-  cost.bytes += kBytesPerRecord + rows * kBytesPerRow + N * kBytesPerEnd + frames(test) * N * kBytesPerEnd;
-  if (is_finished(runs, test_key(test)))
-    ++cost.found;
-  else
-    cost.particle_steps += expected_work(test) + (test.relax ? N * kPassesPerRelaxation : 0);
+double bytes_of(const PlannedRun& run) {
+  const PreparationOptions& o = run.test->preparation;
+  if (run.is_preparation) return kBytesPerRecord + 2 * o.rows * kBytesPerRow + kept(o) * spheres(o) * kBytesPerKept;
+  const double rows = static_cast<double>(run.test->path.segments.size()) * run.test->rows + 1;
+  return kBytesPerRecord + rows * kBytesPerRow + (1 + frames(*run.test)) * spheres_of(*run.test) * kBytesPerEnd;
 }
 
 /// A packing that is dense at once: the gas, shrunk and relaxed roughly.
@@ -94,13 +83,24 @@ double rate_of_one(const State& state, const PreparationOptions& like, const Eng
 
 }  // namespace
 
+double expected_particle_steps(const PlannedRun& run) {
+  const TestSetup& test = *run.test;
+  const PreparationOptions& o = test.preparation;
+  if (run.is_preparation) return expected_work(o) + (kept(o) + 1) * spheres(o) * kPassesPerRelaxation;
+  return expected_work(test) + (test.relax ? spheres_of(test) * kPassesPerRelaxation : 0);
+}
+
 ExpectedCost expected_cost(const std::vector<PlannedTest>& tests, const fs::path& parent) {
   ExpectedCost cost;
-  std::set<std::string> seen;
+  for (const PlannedRun& run : runs_of(tests)) {
+    ++cost.runs;
+    cost.bytes += bytes_of(run);
+    if (is_finished(parent / "runs", run.key))
+      ++cost.found;
+    else
+      cost.particle_steps += expected_particle_steps(run);
+  }
   for (const PlannedTest& test : tests) {
-    if (!test.given && seen.insert(preparation_key(test.preparation)).second)
-      add_preparation(test.preparation, parent / "runs", cost);
-    if (!test.branch_of_preparation && seen.insert(test_key(test)).second) add_test(test, parent / "runs", cost);
     const std::size_t segments = std::max<std::size_t>(1, test.path.segments.size());
     cost.bytes += static_cast<double>(segments) * test.rows * kBytesPerRow;  // the copy of the series
   }
@@ -110,7 +110,7 @@ ExpectedCost expected_cost(const std::vector<PlannedTest>& tests, const fs::path
 ExpectedCost expected_cost(const TestFile& test, const fs::path& output) {
   const bool prepared = test.start == Start::preparation;
   ExpectedCost cost = expected_cost({{test, "", Role::validation, prepared}}, output);
-  const double N = test.given ? static_cast<double>(test.given->packing.size()) : spheres(test.preparation);
+  const double N = spheres_of(test);
   cost.bytes += prepared ? kept(test.preparation) * N * kBytesPerKept + 2 * test.rows * kBytesPerRow
                          : N * (kBytesPerEnd + kBytesPerTableRow) + frames(test) * N * kBytesPerEnd;
   return cost;

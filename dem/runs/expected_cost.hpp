@@ -23,6 +23,9 @@ constexpr auto fields_of(std::type_identity<ExpectedCost>) {
 }
 static_assert(tells_every_member<ExpectedCost>());
 
+/// Of one run, from the start [particle-steps].
+double expected_particle_steps(const PlannedRun& run);
+
 /// Of `tests`; runs that are finished in `parent`/runs are found, which need not exist. Steps are those of feasibility.hpp,
 /// from the mean size distribution.
 ExpectedCost expected_cost(const std::vector<PlannedTest>& tests, const std::filesystem::path& parent);

@@ -1,6 +1,7 @@
 #include "dem/runs/job_list.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <functional>
@@ -12,7 +13,9 @@
 namespace grainlaw::dem {
 namespace {
 
-enum class Phase { waiting, running, done };
+using Clock = std::chrono::steady_clock;
+
+enum class Phase { waiting, elsewhere, running, done };
 
 class Schedule {
  public:
@@ -20,7 +23,9 @@ class Schedule {
       : jobs_(jobs),
         watch_(watch),
         phase_(jobs.size(), Phase::waiting),
+        ask_again_(jobs.size()),
         errors_(jobs.size()),
+        patience_(std::chrono::milliseconds(1000 + jobs.size())),  // gentle with the file system of many
         free_(threads),
         forward_stop_(stop, [this] {
           all_.request_stop();
@@ -33,8 +38,12 @@ class Schedule {
     while (true) {
       while (!all_.stop_requested() && start_next()) {
       }
-      if (running_ == 0) break;
-      changed_.wait(lock);
+      const bool elsewhere = std::find(phase_.begin(), phase_.end(), Phase::elsewhere) != phase_.end();
+      if (running_ == 0 && (!elsewhere || all_.stop_requested())) break;
+      if (elsewhere && free_ > 0 && !all_.stop_requested())
+        changed_.wait_until(lock, Clock::now() + patience_);
+      else
+        changed_.wait(lock);
     }
     lock.unlock();
     workers_.clear();  // joins
@@ -45,9 +54,11 @@ class Schedule {
 
  private:
   bool ready(std::size_t i) const {
+    if (phase_[i] == Phase::elsewhere) return Clock::now() >= ask_again_[i];
     return phase_[i] == Phase::waiting && (!jobs_[i].after || phase_[*jobs_[i].after] == Phase::done);
   }
 
+  /// Starts a job, or finds that one need not be; false when there is none.
   bool start_next() {
     if (free_ == 0) return false;
     std::size_t next = jobs_.size();
@@ -58,6 +69,10 @@ class Schedule {
       ++waiting;
     }
     if (next == jobs_.size()) return false;
+    const Claim claim = claimed(next);
+    if (claim == Claim::elsewhere) ask_later(next);
+    if (claim == Claim::finished) phase_[next] = Phase::done;
+    if (claim != Claim::mine) return true;
     const int threads = std::max(1, free_ / waiting);
     free_ -= threads;
     ++running_;
@@ -66,11 +81,31 @@ class Schedule {
     return true;
   }
 
+  Claim claimed(std::size_t i) {
+    try {
+      const Claim claim = jobs_[i].claim ? jobs_[i].claim() : Claim::mine;
+      if (claim == Claim::finished) watch_.finished(i);
+      return claim;
+    } catch (...) {
+      errors_[i] = std::current_exception();
+      all_.request_stop();
+      return Claim::finished;
+    }
+  }
+
+  void ask_later(std::size_t i) {
+    phase_[i] = Phase::elsewhere;
+    ask_again_[i] = Clock::now() + patience_;
+  }
+
   void work(std::size_t i, int threads) {
     std::exception_ptr error;
+    bool taken_over = false;
     try {
       jobs_[i].run(threads, watch_.control(i, jobs_[i].name, all_.get_token()));
       watch_.finished(i);
+    } catch (const TakenOver&) {
+      taken_over = true;
     } catch (...) {
       error = std::current_exception();
       all_.request_stop();
@@ -78,6 +113,7 @@ class Schedule {
     const std::lock_guard lock(mutex_);
     errors_[i] = error;
     phase_[i] = Phase::done;
+    if (taken_over) ask_later(i);
     free_ += threads;
     --running_;
     changed_.notify_all();
@@ -95,7 +131,9 @@ class Schedule {
   const std::vector<Job>& jobs_;
   Watch& watch_;
   std::vector<Phase> phase_;
+  std::vector<Clock::time_point> ask_again_;
   std::vector<std::exception_ptr> errors_;
+  Clock::duration patience_;
   int free_, running_ = 0;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -1,6 +1,6 @@
 #pragma once
-// Independent jobs over the cores. A job may wait for one earlier job; jobs start in the order of the list as soon as
-// they can. Threads that no waiting job can use go into the running ones' own threads. What a job yields must not
+// Independent jobs over the cores. A job may wait for one earlier job, and for another process that does the same; jobs start in the
+// order of the list as soon as they can. Threads that no waiting job can use go into the running ones' own threads. What a job yields must not
 // depend on its threads or on the order of starting.
 
 #include <functional>
@@ -13,11 +13,23 @@
 
 namespace grainlaw::dem {
 
+/// What a job finds that could start.
+enum class Claim {
+  mine,       ///< it is to be run here and now
+  finished,   ///< there is nothing to do any more
+  elsewhere,  ///< another process does it; to be asked again
+};
+
+/// Thrown by a job that has to leave its work to another process: it is asked again.
+struct TakenOver {};
+
 struct Job {
   std::string name;                  ///< for progress and messages
   double work = 0;                   ///< expected amount, 0 when there is nothing to do [particle-steps]
   std::optional<std::size_t> after;  ///< index of an earlier job that must be finished first
   std::function<void(int threads, const RunControl& control)> run;
+  std::function<Claim()> claim =
+      {};  ///< asked before it is run, and each second while it is done elsewhere; empty: mine
 };
 
 /// Runs all jobs on `threads` threads. When one throws, the others are stopped and the first error in the order of the

@@ -1,13 +1,7 @@
 #include "dem/runs/run_store.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <map>
 #include <vector>
 
@@ -66,28 +60,29 @@ bool is_finished(const fs::path& folder, const std::string& key) {
   return fs::exists(folder / key / "run.json", error);
 }
 
+std::optional<std::string> maker_of(const fs::path& folder, const std::string& key) {
+  return lock_owner(folder / (key + ".lock"));
+}
+
 RunStore::RunStore(const fs::path& parent, const std::string& name) : root_(make_subfolder(parent, name)) {
-  const fs::path file = root_ / ".lock";
-  lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (lock_ < 0) throw Error(fmt::format("{}: cannot be created: {}", file.string(), std::strerror(errno)));
-  struct stat locked {
-  }, there{};  // differ where a store that left nothing took its lock along in between
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 || fstat(lock_, &locked) != 0 || stat(file.c_str(), &there) != 0 ||
-      locked.st_ino != there.st_ino) {
-    close(lock_);
-    throw Error(
-        fmt::format("{}: another grainlaw works in this folder; wait for it or give another -o", root_.string()));
-  }
+  remove_dead_locks(root_);
 }
 
 RunStore::~RunStore() {
-  std::error_code ignored;  // a store that nobody has put anything into leaves nothing
-  const auto entries = std::distance(fs::directory_iterator(root_, ignored), fs::directory_iterator());
-  if (!ignored && entries == 1 && fs::remove(root_ / ".lock", ignored)) fs::remove(root_, ignored);
-  close(lock_);
+  std::error_code not_empty;  // a store that nobody has put anything into leaves nothing
+  fs::remove(root_, not_empty);
 }
 
 fs::path RunStore::folder(const std::string& key) const { return root_ / key; }
+
+std::unique_ptr<ProcessLock> RunStore::try_lock(const std::string& key) const {
+  std::error_code none;
+  fs::create_directory(root_, none);  // another may have left nothing and taken it along
+  auto lock = ProcessLock::try_lock(root_ / (key + ".lock"));
+  // opening it makes a network file system look again for what others have finished there
+  if (lock) fs::directory_iterator(folder(key), none);
+  return lock;
+}
 
 std::optional<Json> RunStore::find(const std::string& key) const {
   const fs::path run = folder(key);

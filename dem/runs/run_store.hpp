@@ -1,13 +1,16 @@
 #pragma once
 // Finished runs, found again by what they are a function of: FOLDER/<key>/ holds a run's files and, written last,
 // run.json with their digests. The key is the SHA-256 of the canonical JSON of the request and the engine's version.
-// The folder of an unfinished run holds what it can go on from. One process works in a store at a time.
+// The folder of an unfinished run holds what it can go on from. Many processes, also on many machines, work in a store at a
+// time: whoever makes a run holds its lock, FOLDER/<key>.lock.
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "model/files/json_document.hpp"
+#include "model/files/process_lock.hpp"
 
 namespace grainlaw::dem {
 
@@ -17,6 +20,9 @@ std::string run_key(const Json& request);
 /// Whether FOLDER/<key> holds a finished run, for those who only look: nothing is locked, no digest is compared.
 bool is_finished(const std::filesystem::path& folder, const std::string& key);
 
+/// Who makes the run now, "process 4711 on node7"; for those who only look, too.
+std::optional<std::string> maker_of(const std::filesystem::path& folder, const std::string& key);
+
 /// Scratch files of a run in progress.
 inline constexpr const char* kCheckpoint = "checkpoint";
 inline constexpr const char* kPreviousCheckpoint = "checkpoint.previous";
@@ -24,14 +30,18 @@ inline constexpr const char* kProgress = "progress.json";  ///< what a preparati
 
 class RunStore {
  public:
-  /// Creates parent/name when absent and locks it until destruction, when it is removed if still empty. Throws Error when another
-  /// process works there.
+  /// Creates parent/name when absent and removes the locks of dead processes. The destructor removes it if it is still empty.
   RunStore(const std::filesystem::path& parent, const std::string& name);
   ~RunStore();
   RunStore(const RunStore&) = delete;
   RunStore& operator=(const RunStore&) = delete;
 
+  const std::filesystem::path& root() const { return root_; }
   std::filesystem::path folder(const std::string& key) const;
+
+  /// The right to make the run, while it is held: for begin(), reopen(), set_aside_damaged() and finish() where others may work, too.
+  /// Nothing when a living other has it.
+  std::unique_ptr<ProcessLock> try_lock(const std::string& key) const;
 
   /// run.json of a finished run that is whole and whose files are as they were written; nothing otherwise. Scratch files that a kill left
   /// beside a finished run are removed.
@@ -53,7 +63,6 @@ class RunStore {
 
  private:
   std::filesystem::path root_;
-  int lock_ = -1;
 };
 
 }  // namespace grainlaw::dem

@@ -271,28 +271,6 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   return store.find(key).value();
 }
 
-Job preparation_job(const RunStore& store, const PreparationOptions& options, const std::string& name,
-                    const Execution& execution) {
-  return {name, store.find(preparation_key(options)) ? 0 : expected_work(options), std::nullopt,
-          [&store, &options, policy = policy_of(execution, name)](int threads, const RunControl& control) {
-            PreparationOptions with_threads = options;
-            with_threads.engine.threads = threads;
-            without_empty_folders({store.folder(preparation_key(options))},
-                                  [&] { ensure_preparation(store, with_threads, policy, control); });
-          }};
-}
-
-Job test_job(const RunStore& store, const TestSetup& test, const std::string& name, std::optional<std::size_t> after,
-             const Execution& execution) {
-  return {name, store.find(test_key(test)) ? 0 : expected_work(test), after,
-          [&store, &test, policy = policy_of(execution, name)](int threads, const RunControl& control) {
-            TestSetup with_threads = test;
-            with_threads.preparation.engine.threads = threads;
-            without_empty_folders({store.folder(test_key(test))},
-                                  [&] { ensure_test(store, with_threads, policy, control); });
-          }};
-}
-
 PackingInfo packing_from_record(const Json& record) {
   PackingInfo info;
   read_fields(record.at("packing"), info);

@@ -1,6 +1,6 @@
 #pragma once
 // The two kinds of run behind every command: the preparation of a packing and an element test. Each is looked up in the
-// store first and executed only when it is not there.
+// store first and executed only when it is not there; who calls has the run's lock where others may work in the store.
 
 #include <filesystem>
 #include <optional>
@@ -9,7 +9,6 @@
 
 #include "dem/element_tests/preparation.hpp"
 #include "dem/runs/checkpoint_files.hpp"
-#include "dem/runs/job_list.hpp"
 #include "dem/runs/path_probes.hpp"
 #include "dem/runs/run_store.hpp"
 #include "model/files/dataset.hpp"
@@ -47,13 +46,6 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
 /// Likewise an element test; a preparation that it needs must be in the store. Files: series.csv,
 /// end.state, probes.csv where it asks for probes, and the states and frames.csv of path_frames.hpp.
 Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolicy& policy, const RunControl& control);
-
-/// The same as jobs of this name, without work when the run is in the store. Store, options and test must outlive the
-/// job; `after` is the index of the job that makes the packing.
-Job preparation_job(const RunStore& store, const PreparationOptions& options, const std::string& name,
-                    const Execution& execution);
-Job test_job(const RunStore& store, const TestSetup& test, const std::string& name, std::optional<std::size_t> after,
-             const Execution& execution);
 
 /// What a series on disk was measured on, from a run's record.
 PackingInfo packing_from_record(const Json& record);

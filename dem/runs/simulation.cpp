@@ -16,20 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The jobs of the file: the preparation unless the packing is given, then the test unless there is none.
-void run_jobs_of(const TestFile& test, const RunStore& store, const Execution& execution) {
-  std::vector<Job> jobs;
-  if (!test.given) {
-    const std::string name = fmt::format("preparation of seed {}", test.preparation.packing.seed);
-    jobs.push_back(preparation_job(store, test.preparation, name, execution));
-  }
-  if (test.start != Start::preparation) {
-    const auto after = test.given ? std::nullopt : std::optional<std::size_t>(0);
-    jobs.push_back(test_job(store, test, "element test", after, execution));
-  }
-  run_jobs(jobs, execution.threads, execution.watch, execution.stop);
-}
-
 /// What unloading.csv was observed on.
 Path unloading_branch(const PreparationOptions& options) {
   TestRequest iso;
@@ -84,10 +70,12 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
 SimulationResult simulate_into(const TestFile& test, const fs::path& output, const Execution& execution) {
   make_output_folder(output);
   const RunStore store(output, "runs");
-  run_jobs_of(test, store, execution);
-
   const bool prepared = test.start == Start::preparation;
-  const std::string key = prepared ? preparation_key(test.preparation) : test_key(test);
+  const std::vector<PlannedTest> tests{{test, "element test", Role::validation, prepared}};
+  RunCounts counts;
+  make_runs(runs_of(tests), store, execution, counts);
+  const auto lock = lock_results(output, execution);
+  const std::string key = run_of(tests.front());
   const Json record = store.find(key).value();
   std::vector<std::string> files = publish(store, key, record, output);
   const Path path = prepared ? unloading_branch(test.preparation) : test.path;

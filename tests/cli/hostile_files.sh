@@ -18,6 +18,7 @@ cp scene/pictures/pictures.json law/dataset
 call() {
   case $1 in
     report) "$grainlaw" report law -o report.html ;;
+    submit) "$grainlaw" submit scene/listed --slurm --dry-run ;;
     *) "$grainlaw" check "$2" ;;
   esac
 }
@@ -43,7 +44,8 @@ json_files=(
   "check scene/seeds/spec/small.json user" "check scene/path/path.json user" "check scene/test/test.json user"
   "check scene/dataset/dataset.json own" "check scene/parameters/parameters.json own" "check scene/prior/prior.json own"
   "report law/calibration.json own" "report law/fitted_paths.json own" "report law/dataset/pictures.json own"
-  "report law/predictions/p/prediction.json own" "report law/predictions/compared/comparison.json own" "report law/studies/s/study.json own")
+  "report law/predictions/p/prediction.json own" "report law/predictions/compared/comparison.json own" "report law/studies/s/study.json own"
+  "submit scene/listed/tasks/tasks.json own")
 for entry in "${json_files[@]}"; do
   read -r reader file whose <<<"$entry"
   cp "$file" sound

@@ -6,7 +6,7 @@ code_of() { local code=0; "$@" >out 2>err || code=$?; echo "$code"; }
 
 [[ $(code_of "$grainlaw" --version) == 0 ]] && grep -Eq '^grainlaw [0-9]+\.[0-9]+\.[0-9]+ \(.+\)$' out || fail version
 [[ $(code_of "$grainlaw" --help) == 0 && ! -s err ]] || fail help
-for command in init check simulate calibrate predict report study completion man; do
+for command in init check simulate calibrate runs task submit predict report study completion man; do
   grep -q "^  $command " out || fail "help does not list $command"
 done
 for command in simulate calibrate predict report "study integrator" "study dem" "study fit" "study chain" "study prior"; do
@@ -29,7 +29,7 @@ for arguments in "" study; do
 done
 [[ $(code_of "$grainlaw") == 2 ]] && grep -q 'grainlaw init spec' err && grep -q '^  calibrate ' err || fail "$(cat err)"
 # help says the same as --help, --version goes with every command, no help is wider than 80 columns or shows numbers of choices
-for command in "" init check simulate calibrate predict report study "study dem" "study chain" completion man; do
+for command in "" init check simulate calibrate runs task submit predict report study "study dem" "study chain" completion man; do
   "$grainlaw" $command --help >wanted
   [[ $(code_of "$grainlaw" help $command) == 0 ]] && cmp -s wanted out || fail "help $command"
   (( $(LC_ALL=C.UTF-8 wc -L <out) <= 80 )) || fail "help $command is wider than 80 columns"

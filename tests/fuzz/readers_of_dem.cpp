@@ -6,6 +6,7 @@
 #include "dem/runs/run_store.hpp"
 #include "dem/runs/runs.hpp"
 #include "dem/runs/spec_file.hpp"
+#include "dem/runs/task_list.hpp"
 #include "dem/runs/test_file.hpp"
 #include "model/files/json_document.hpp"
 #include "model/files/output.hpp"
@@ -89,6 +90,8 @@ std::vector<Reader> readers_of_dem(const fs::path& scene) {
          json_text(folder.states());
          json_text(folder.warnings());
        }},
+      {"tasks", Shape::json, "listed/tasks/tasks.json",
+       [](std::string_view, const fs::path& file) { dem::read_tasks(file.parent_path().parent_path()); }},
       {"pictures", Shape::json, "pictures/pictures.json",
        [](std::string_view, const fs::path& file) { dem::read_pictures(file.parent_path()); }},
   };

@@ -31,7 +31,8 @@ JSON
     "$grainlaw" simulate test.json -o sim &&
     "$grainlaw" calibrate --dataset "$source/examples/starters/dataset" -o law &&
     "$grainlaw" predict law/parameters.json path.json --model reduced --dem --spec spec.json -o prediction &&
-    "$grainlaw" study fit law --vary packings=2 -o study
+    "$grainlaw" study fit law --vary packings=2 -o study &&
+    "$grainlaw" runs spec.json -o listed --array 2
 ) >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
 
 mkdir -p {csv,path,strain,series,dataset,test,spheres,state,checkpoint,store/runs/key,progress,pictures} \
@@ -65,6 +66,9 @@ run=$(dirname "${runs[0]}")
 cp "$run"/* store/runs/key
 jq -c '.key = "key"' "$run/run.json" >store/runs/key/run.json
 echo '{"states": [], "warnings": ["w"], "files": {}}' >progress/progress.json
+mkdir -p listed/tasks
+cp "$work/listed/tasks/spec.json" listed/tasks
+slim "$work/listed/tasks/tasks.json" | jq -c 'del(.provenance)' >listed/tasks/tasks.json
 slim "$source/examples/paper/data/dataset/pictures.json" 18 >pictures/pictures.json
 
 slim "$work/law/parameters.json" | jq -c 'del(.provenance, .parameters[].symbol, .parameters[].equation)' >parameters/parameters.json

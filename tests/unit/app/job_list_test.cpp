@@ -90,6 +90,61 @@ TEST(JobList, StopsTheOthersWhenOneFailsAndReportsThatOne) {
   EXPECT_EQ(started, 2);
 }
 
+TEST(JobList, DoesOthersFirstWhileOneIsDoneElsewhere) {
+  Quiet quiet;
+  std::atomic<bool> released = false;
+  std::atomic<int> asked = 0, run = 0;
+  std::vector<dem::Job> jobs;
+  jobs.push_back({"elsewhere", 1, std::nullopt, [&](int, const RunControl&) { ADD_FAILURE(); },
+                  [&] {
+                    ++asked;
+                    return released ? dem::Claim::finished : dem::Claim::elsewhere;
+                  }});
+  jobs.push_back({"after it", 1, 0, [&](int, const RunControl&) {
+                    EXPECT_TRUE(released);
+                    ++run;
+                  }});
+  jobs.push_back({"other", 1, std::nullopt, [&](int, const RunControl&) {
+                    ++run;
+                    released = true;
+                  }});
+  jobs.push_back(
+      {"found", 0, std::nullopt, [&](int, const RunControl&) { ADD_FAILURE(); }, [] { return dem::Claim::finished; }});
+  dem::run_jobs(jobs, 1, quiet.printer, {});
+  EXPECT_EQ(run, 2);
+  EXPECT_GE(asked, 2);
+}
+
+TEST(JobList, AsksAgainForWhatWasTakenOver) {
+  Quiet quiet;
+  int asked = 0, run = 0;
+  const auto claim = [&] { return ++asked == 1 ? dem::Claim::mine : dem::Claim::finished; };
+  dem::run_jobs({{"taken", 1, std::nullopt,
+                  [&](int, const RunControl&) {
+                    ++run;
+                    throw dem::TakenOver();
+                  },
+                  claim}},
+                2, quiet.printer, {});
+  EXPECT_EQ(run, 1);
+  EXPECT_EQ(asked, 2);
+}
+
+TEST(JobList, IsInterruptedWhileItWaitsAndFailsWithAClaim) {
+  Quiet quiet;
+  std::stop_source stop;
+  const std::jthread later([&] {
+    std::this_thread::sleep_for(30ms);
+    stop.request_stop();
+  });
+  const auto never = [](int, const RunControl&) { ADD_FAILURE(); };
+  EXPECT_THROW(dem::run_jobs({{"elsewhere", 1, std::nullopt, never, [] { return dem::Claim::elsewhere; }}}, 1,
+                             quiet.printer, stop.get_token()),
+               Interrupted);
+  const auto fails = []() -> dem::Claim { throw Error("no space"); };
+  EXPECT_THROW(dem::run_jobs({{"fails", 1, std::nullopt, never, fails}}, 1, quiet.printer, {}), Error);
+}
+
 TEST(JobList, StopsOnRequest) {
   Quiet quiet;
   std::stop_source stop;

@@ -2,7 +2,6 @@
 #include "dem/runs/runs.hpp"
 
 #include <map>
-#include <thread>
 
 #include "dem/files/state_file.hpp"
 #include "dem/runs/dataset_runs.hpp"
@@ -273,11 +272,6 @@ TEST_F(Runs, DoNotTakeTheCheckpointOfAnother) {
   ensure_test(store, {tiny(), d2(), 20}, {true, 0, [&](const std::string& text) { log.push_back(text); }}, {});
   ASSERT_FALSE(log.empty());
   EXPECT_NE(log[0].find("is of another run"), std::string::npos) << log[0];
-}
-
-TEST_F(Runs, StoreBelongsToOneProcess) {
-  const RunStore store(folder_, "runs");
-  EXPECT_THROW(RunStore(folder_, "runs"), Error);
 }
 
 dem::Spec tiny_spec() {

@@ -1,0 +1,48 @@
+// grainlaw runs SPEC.json -o DIR: the runs that a calibration needs and which are missing; --array deals them out to tasks.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
+#include "app/terminal/run_list_text.hpp"
+#include "chain/calibration.hpp"
+#include "dem/runs/task_list.hpp"
+
+namespace grainlaw::app {
+namespace {
+
+struct RunsOptions {
+  std::filesystem::path spec;    ///< SPEC.json
+  std::filesystem::path output;  ///< folder of the calibration
+  int tasks = 0;                 ///< to deal the missing runs out to; 0: list them alone
+};
+
+ExitCode runs(const RunsOptions& options, Session& session) {
+  const chain::CalibrationInput input = chain::read_calibration_input(options.spec, {});
+  const std::vector<dem::PlannedTest> tests = plan(*input.spec);
+  RunListing listing = listing_of(dem::listed(dem::runs_of(tests)), options.output);
+  if (options.tasks > 0) listing.missing = dem::write_tasks(*input.spec, options.tasks, options.output, session).runs;
+  print_result(session.json ? json_text(to_json(listing)) : text_of(listing, options.output));
+  return ExitCode::ok;
+}
+
+}  // namespace
+
+Task declare_runs(CLI::App& command) {
+  const auto options = std::make_shared<RunsOptions>();
+  command.add_option("SPEC", options->spec, "SPEC.json of the calibration")->required()->type_name("FILE");
+  command.add_option("-o,--output", options->output, "folder of the calibration, whose finished runs are found")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option("--array", options->tasks,
+                  "deal the missing runs out to at most N tasks of like work and write them to DIR/tasks, for task "
+                  "and submit")
+      ->check(between(1, 100000))
+      ->type_name("N");
+  return [options](Session& session) { return runs(*options, session); };
+}
+
+}  // namespace grainlaw::app
