@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kNap{10};
+constexpr std::chrono::milliseconds kBetweenLooks{10};
 constexpr const char* kMarks = "marks";
 constexpr std::streamoff kTail = 4000;  // of a log that is looked through [byte]
 
@@ -85,7 +85,7 @@ void run_deck(const LammpsPlace& place, const std::string& name, const std::stri
     running = process->running();  // before the marks, so that the last ones are seen
     for (const std::string& look : marks.more()) on_look(look);
     if (control.stop.stop_requested()) throw Interrupted("LAMMPS: interrupted on request");
-    if (running) std::this_thread::sleep_for(kNap);
+    if (running) std::this_thread::sleep_for(kBetweenLooks);
   }
   if (process->succeeded()) return;
   std::vector<std::string> said = last_lines(place.folder / log, 3);
