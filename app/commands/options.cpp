@@ -4,9 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
 
+#include "model/files/number_text.hpp"
 #include "model/files/one_line.hpp"
 #include "model/vocabulary/nearest_word.hpp"
 
@@ -14,13 +13,6 @@ namespace grainlaw::app {
 namespace {
 
 constexpr std::size_t kMostSeeds = 1000;  // as in SPEC
-
-template <class Number>
-std::optional<Number> whole_number(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
 
 }  // namespace
 
@@ -38,7 +30,7 @@ std::size_t chosen(const std::string& option, const std::string& text, const std
 CLI::Validator between(double least, double most) {
   const std::string range = fmt::format("{:g} to {:g}", least, most);
   const auto check = [least, most, range](const std::string& text) -> std::string {
-    const auto number = whole_number<double>(text);
+    const auto number = number_of<double>(text);
     if (number && *number >= least && *number <= most) return "";
     return fmt::format("got '{}'; give a number, {}", one_line(text, 60), range);
   };
@@ -55,8 +47,8 @@ std::vector<std::uint64_t> seeds_of(const std::string& option, const std::string
     const std::string part = text.substr(begin, end - begin);
     begin = end + 1;
     const std::size_t dash = part.find('-');
-    const auto first = whole_number<std::uint64_t>(part.substr(0, dash));
-    const auto last = dash == std::string::npos ? first : whole_number<std::uint64_t>(part.substr(dash + 1));
+    const auto first = number_of<std::uint64_t>(part.substr(0, dash));
+    const auto last = dash == std::string::npos ? first : number_of<std::uint64_t>(part.substr(dash + 1));
     if (!first || !last || *last < *first) refuse("give seeds and ranges of them, e.g. 201-205 or 1,3,7-9");
     if (*last - *first >= kMostSeeds - seeds.size()) refuse(fmt::format("give at most {} seeds", kMostSeeds));
     for (std::uint64_t more = 0; more <= *last - *first; ++more) seeds.push_back(*first + more);

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <utility>
 
+#include "model/files/number_text.hpp"
 #include "model/vocabulary/tensor.hpp"
 
 namespace grainlaw::chain {
@@ -113,14 +114,13 @@ const Quantity* find_quantity(const std::string& name) {
 }
 
 Title parted(const std::string& title) {
-  const auto trimmed = [](std::string text) {
-    while (!text.empty() && text.back() == ' ') text.pop_back();
-    return text.substr(std::min(text.find_first_not_of(' '), text.size()));
+  const auto part = [&](std::size_t begin, std::size_t end) {
+    return std::string(trimmed(std::string_view(title).substr(begin, end - begin)));
   };
   for (const auto& [open, close] : {std::pair{'[', ']'}, {'(', ')'}}) {
     const auto at = title.rfind(open);
     if (at != std::string::npos && at > 0 && title.back() == close)
-      return {trimmed(title.substr(0, at)), trimmed(title.substr(at + 1, title.size() - at - 2))};
+      return {part(0, at), part(at + 1, title.size() - 1)};
   }
   for (const char separator : {'_', '/', ' '}) {
     const auto at = title.rfind(separator);
@@ -128,9 +128,9 @@ Title parted(const std::string& title) {
     const std::string word = title.substr(at + 1);  // "_m" and "_s" may mean anything
     const bool unit =
         word == "%" || (word.size() > 1 && std::ranges::any_of(kUnits, [&](const Unit& u) { return word == u.name; }));
-    if (unit) return {trimmed(title.substr(0, at)), word};
+    if (unit) return {part(0, at), word};
   }
-  return {trimmed(title), std::nullopt};
+  return {part(0, title.size()), std::nullopt};
 }
 
 const Quantity* guessed(const std::string& name) {

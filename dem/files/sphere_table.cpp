@@ -84,7 +84,7 @@ Sphere read_row(const TextFile& lines, const std::vector<Column>& order) {
   split(line, [&](std::size_t field, std::string_view text) {
     const Column column = order[field];
     if (column == id) {
-      const auto name = integer(text);
+      const auto name = number_of<std::int64_t>(text);
       if (!name) throw lines.refusal("id", in_quotes(text) + " is no integer");
       sphere.name = *name;
       return;

@@ -2,18 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-
 namespace grainlaw::dem {
 namespace {
-
-template <class Number>
-std::optional<Number> parse(std::string_view text) {
-  Number value{};
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 bool blank(char c) { return c == ' ' || c == '\t'; }
 
@@ -54,12 +44,6 @@ std::string in_quotes(std::string_view text) {
   return "'" + shown + (text.size() > 40 ? "...'" : "'");
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 void split_words(std::string_view line, std::vector<std::string_view>& words, bool commas) {
   words.clear();
   const auto between = [commas](char c) { return blank(c) || (commas && c == ','); };
@@ -70,12 +54,5 @@ void split_words(std::string_view line, std::vector<std::string_view>& words, bo
     if (i > begin) words.push_back(line.substr(begin, i - begin));
   }
 }
-
-std::optional<double> decimal(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  return parse<double>(text);
-}
-
-std::optional<std::int64_t> integer(std::string_view text) { return parse<std::int64_t>(text); }
 
 }  // namespace grainlaw::dem

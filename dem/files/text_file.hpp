@@ -1,14 +1,13 @@
 #pragma once
 // Text that somebody else wrote, line by line: bounded, and whatever is wrong is said with file, line and column.
 
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "model/files/number_text.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -41,14 +40,7 @@ class TextFile {
 /// Text of a file as it may be shown in a message, in quotes.
 std::string in_quotes(std::string_view text);
 
-/// Without blanks at its ends.
-std::string_view trimmed(std::string_view text);
-
 /// The words between blanks (and commas, if these count); views into `line`.
 void split_words(std::string_view line, std::vector<std::string_view>& words, bool commas = false);
-
-/// The whole text as a number, independently of the locale; nothing when it is none.
-std::optional<double> decimal(std::string_view text);
-std::optional<std::int64_t> integer(std::string_view text);
 
 }  // namespace grainlaw::dem

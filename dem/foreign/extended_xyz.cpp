@@ -83,7 +83,7 @@ class ExtendedXyz : public ForeignReader {
     const auto refuse = [&] { return lines_.refusal("", "Properties: must be NAME:TYPE:COLUMNS, repeated"); };
     if (parts.size() % 3 != 0) throw refuse();
     for (std::size_t i = 0; i < parts.size(); i += 3) {
-      const auto components = integer(parts[i + 2]);
+      const auto components = number_of<std::int64_t>(parts[i + 2]);
       if (!components || *components < 1 || *components > 100) throw refuse();
       for (std::string& title : component_titles(parts[i], static_cast<std::size_t>(*components)))
         columns.push_back(std::move(title));

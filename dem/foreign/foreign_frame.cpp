@@ -50,7 +50,7 @@ void read_rows(TextFile& lines, std::size_t rows, NumberTable& table) {
 }
 
 std::size_t row_count(const TextFile& lines, std::string_view text) {
-  const auto count = integer(trimmed(text));
+  const auto count = number_of<std::int64_t>(trimmed(text));
   if (!count || *count < 0 || *count > static_cast<std::int64_t>(kMaxForeignRows)) {
     throw lines.refusal("", fmt::format("{} is no number of rows, 0 to 1e8", in_quotes(text)));
   }

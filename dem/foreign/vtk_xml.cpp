@@ -167,7 +167,7 @@ class VtkXml : public ForeignReader {
   }
 
   std::size_t whole(const char* text, const char* what) const {
-    const auto count = integer(text);
+    const auto count = number_of<std::int64_t>(text);
     if (!count || *count < 0 || *count > static_cast<std::int64_t>(kMaxForeignRows))
       throw refusal(fmt::format("{}: {} is no whole number, 0 to 1e8", what, in_quotes(text)));
     return static_cast<std::size_t>(*count);
@@ -190,7 +190,7 @@ class VtkXml : public ForeignReader {
       return numbers(array.attribute("type").value(), count, name, Bytes(trimmed_lines(array.child_value()), true));
     }
     if (format != "appended") throw refusal(fmt::format("array {}: format {} is not known", name, in_quotes(format)));
-    const auto offset = integer(array.attribute("offset").value());
+    const auto offset = number_of<std::int64_t>(array.attribute("offset").value());
     if (!offset || *offset < 0 || static_cast<std::size_t>(*offset) > appended_.size())
       throw refusal(fmt::format("array {}: its offset lies outside the appended data; is the file cut?", name));
     return numbers(array.attribute("type").value(), count, name,

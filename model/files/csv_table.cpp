@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
+#include "model/files/number_text.hpp"
 #include "model/files/one_line.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -100,8 +100,8 @@ bool CsvReader::next(std::vector<double>& values) {
       values[i] = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
-    const auto [rest, code] = std::from_chars(field.data(), field.data() + field.size(), values[i]);
-    if (code != std::errc{} || rest != field.data() + field.size() || !std::isfinite(values[i])) {
+    values[i] = number_of<double>(field).value_or(std::numeric_limits<double>::infinity());
+    if (!std::isfinite(values[i])) {
       refuse(header_[i],
              fmt::format("'{}' is not a finite number; write it like 1.5e-3, or leave the field empty where undefined",
                          one_line(field, 40)));

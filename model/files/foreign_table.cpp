@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -13,19 +12,12 @@
 #include "model/files/csv_table.hpp"
 #include "model/files/npy.hpp"
 #include "model/files/npz.hpp"
+#include "model/files/number_text.hpp"
 #include "model/files/one_line.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {
-
-constexpr std::string_view kBlanks = " \t";
-
-std::string_view trimmed(std::string_view text) {
-  const auto begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
 
 std::string_view without_quotes(std::string_view text) {
   const bool quoted = text.size() >= 2 && text.front() == text.back() && (text.front() == '"' || text.front() == '\'');
@@ -37,7 +29,7 @@ std::vector<std::string_view> words_of(std::string_view line, char delimiter) {
   std::vector<std::string_view> words;
   line = trimmed(line);
   while (words.size() <= kMaxCsvColumns) {
-    const auto end = delimiter == ' ' ? line.find_first_of(kBlanks) : line.find(delimiter);
+    const auto end = delimiter == ' ' ? line.find_first_of(" \t") : line.find(delimiter);
     words.push_back(without_quotes(trimmed(line.substr(0, end))));
     if (end == std::string_view::npos) break;
     line.remove_prefix(end + 1);
@@ -55,13 +47,8 @@ char delimiter_of(std::string_view line) {
 }
 
 /// A number, NaN for an empty word; nothing for what is neither.
-std::optional<double> number_of(std::string_view word) {
-  if (word.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (word.front() == '+' && word.size() > 1 && word[1] != '-') word.remove_prefix(1);
-  double value = 0;
-  const auto [rest, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (rest != word.data() + word.size() || code != std::errc{}) return std::nullopt;
-  return value;
+std::optional<double> number_or_nan(std::string_view word) {
+  return word.empty() ? std::numeric_limits<double>::quiet_NaN() : decimal(word);
 }
 
 class TextTable {
@@ -111,7 +98,7 @@ class TextTable {
   /// The columns by the first line; true when it is their header.
   bool begin(const std::vector<std::string_view>& words) {
     bool header = false;
-    for (const std::string_view word : words) header = header || !number_of(word);
+    for (const std::string_view word : words) header = header || !number_or_nan(word);
     std::vector<std::string_view> titles;
     if (header)
       titles = words;
@@ -133,7 +120,7 @@ class TextTable {
     if (table_.rows() == kMaxCsvRows) refuse(fmt::format("more than {} rows; thin the series", kMaxCsvRows));
     for (std::size_t i = 0; i < words.size(); ++i) {
       ForeignColumn& column = table_.columns[i];
-      const std::optional<double> value = number_of(words[i]);
+      const std::optional<double> value = number_or_nan(words[i]);
       if (!value && column.bad.empty()) {
         column.bad_row = column.values.size();
         column.bad = one_line(words[i], 40);

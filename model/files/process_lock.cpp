@@ -10,7 +10,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <climits>
 #include <cstdio>
 #include <cstring>
@@ -19,6 +18,7 @@
 #include <vector>
 
 #include "model/files/digest.hpp"
+#include "model/files/number_text.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
@@ -94,9 +94,9 @@ std::optional<Owner> owner_of(const std::string& name) {
   }
   Owner owner{parts[0], 0, "", ""};
   if (parts.size() != 5) return std::nullopt;
-  const std::string& pid = parts[1];
-  const auto [end, error] = std::from_chars(pid.data(), pid.data() + pid.size(), owner.pid);
-  if (error != std::errc() || end != pid.data() + pid.size() || owner.pid <= 0) return std::nullopt;
+  const auto pid = number_of<decltype(owner.pid)>(parts[1]);
+  if (!pid || *pid <= 0) return std::nullopt;
+  owner.pid = *pid;
   owner.start = parts[2];
   owner.machine = parts[3];
   return owner;
