@@ -1,20 +1,16 @@
 #pragma once
 // What jobs report, kept until somebody asks. Written by the threads that compute, read by the one that waits for them.
 
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "model/vocabulary/run_control.hpp"
+#include "app/terminal/job_record.hpp"
 
 namespace grainlaw::python {
 
-class ProgressRecord : public Watch {
+class ProgressRecord : public app::JobRecord {
  public:
-  void begin(const std::vector<double>& work, std::string unit) override;
-  RunControl control(std::size_t job, std::string name, std::stop_token stop) override;
-  void finished(std::size_t job) override;
   void end() override;
   void log(const std::string& text) override;
 
@@ -25,15 +21,8 @@ class ProgressRecord : public Watch {
   std::vector<std::string> messages();
 
  private:
-  struct Job {
-    std::string name, stage;
-    double expected = 0, work = 0, fraction = 0;
-    bool running = false, done = false;
-  };
+  void changed(bool) override {}
 
-  std::mutex mutex_;
-  std::vector<Job> jobs_;
-  std::string unit_;
   std::vector<std::string> messages_;
 };
 

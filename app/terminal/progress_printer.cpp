@@ -37,42 +37,13 @@ ProgressPrinter::ProgressPrinter(std::FILE* out, bool quiet)
     : out_(out), quiet_(quiet), terminal_(isatty(fileno(out)) == 1) {}
 
 void ProgressPrinter::begin(const std::vector<double>& work, std::string unit) {
-  const std::lock_guard lock(mutex_);
-  jobs_.assign(work.size(), {});
-  unit_ = std::move(unit);
-  for (std::size_t i = 0; i < work.size(); ++i) {
-    jobs_[i].expected = work[i];
-    jobs_[i].done = work[i] == 0;
-  }
+  JobRecord::begin(work, std::move(unit));
   began_ = printed_ = Clock::now();
 }
 
-RunControl ProgressPrinter::control(std::size_t job, std::string name, std::stop_token stop) {
-  const std::lock_guard lock(mutex_);
-  jobs_[job].name = std::move(name);
-  jobs_[job].running = true;
-  return {[this, job](const Progress& progress) { report(job, progress); }, std::move(stop)};
-}
-
-void ProgressPrinter::report(std::size_t index, const Progress& progress) {
-  const std::lock_guard lock(mutex_);
-  Job& job = jobs_[index];
-  job.stage = progress.stage;
-  // only what was planned for counts: passes of a minimiser, for one, are no particle-steps
-  if (progress.unit == unit_) {
-    if (!job.first) job.first = progress.work;
-    job.work = progress.work;
-  }
-  job.fraction = progress.fraction;
-  if (seconds_since(printed_) >= (terminal_ ? kTerminalInterval : kLogInterval)) print();
-}
-
-void ProgressPrinter::finished(std::size_t index) {
-  const std::lock_guard lock(mutex_);
-  Job& job = jobs_[index];
-  job.running = false;
-  job.done = true;
-  if (terminal_) print();
+void ProgressPrinter::changed(bool finished) {
+  const double interval = terminal_ ? kTerminalInterval : kLogInterval;
+  if (finished ? terminal_ : seconds_since(printed_) >= interval) print();
 }
 
 std::string ProgressPrinter::status() const {
@@ -83,7 +54,7 @@ std::string ProgressPrinter::status() const {
   if (unit_.empty()) {
     for (const Job& job : jobs_) {
       expected += job.expected;
-      covered += job.expected * (job.done ? 1 : job.fraction);
+      covered += this->covered(job);
       if (job.running) running = job.stage.empty() ? job.name : fmt::format("{}, {}", job.name, job.stage);
     }
     const std::string text = fmt::format("{:3.0f} %", expected > 0 ? 100 * covered / expected : 100);
@@ -94,7 +65,7 @@ std::string ProgressPrinter::status() const {
   }
   for (const Job& job : jobs_) {
     expected += job.expected;
-    covered += job.done ? job.expected : std::min(job.work, 0.99 * job.expected);
+    covered += this->covered(job);
     earlier += std::min(job.first.value_or(0), 0.99 * job.expected);
     worked += job.work - job.first.value_or(0);
     done += job.done ? 1 : 0;

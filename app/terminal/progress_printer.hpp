@@ -4,37 +4,23 @@
 
 #include <chrono>
 #include <cstdio>
-#include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "model/vocabulary/run_control.hpp"
+#include "app/terminal/job_record.hpp"
 
 namespace grainlaw::app {
 
-class ProgressPrinter : public Watch {
+class ProgressPrinter : public JobRecord {
  public:
   ProgressPrinter(std::FILE* out, bool quiet);
 
   void begin(const std::vector<double>& work, std::string unit) override;
-  RunControl control(std::size_t job, std::string name, std::stop_token stop) override;
-  void finished(std::size_t job) override;
   void end() override;                         ///< clears the line, too
   void log(const std::string& text) override;  ///< a line of its own
 
  private:
-  struct Job {
-    std::string name;
-    double expected = 0;          // work of the whole job
-    double work = 0;              // work done, that of an earlier session included
-    std::optional<double> first;  // work at the first report of this session
-    double fraction = 0;          // of the current stage
-    std::string stage;
-    bool running = false, done = false;
-  };
-
-  void report(std::size_t job, const Progress& progress);
+  void changed(bool finished) override;
   void write(const std::string& text);
   void print();
   void clear_line();
@@ -42,9 +28,6 @@ class ProgressPrinter : public Watch {
 
   std::FILE* out_;
   bool quiet_, terminal_, line_shown_ = false;
-  std::mutex mutex_;
-  std::vector<Job> jobs_;
-  std::string unit_;
   std::chrono::steady_clock::time_point began_, printed_;
 };
 
