@@ -160,9 +160,10 @@ void change_field(std::string& field, Chance& chance) {
 }
 
 bool mutate_csv(std::string& text, Chance& chance) {
+  const char separator = text.find(',') == std::string::npos ? ' ' : ',';
   std::vector<std::string> lines = split(text, '\n');
   std::string& line = any_of(lines, chance);
-  std::vector<std::string> fields = split(line, ',');
+  std::vector<std::string> fields = split(line, separator);
   switch (below(8, chance)) {
     case 0:
       std::swap(line, any_of(lines, chance));
@@ -176,19 +177,19 @@ bool mutate_csv(std::string& text, Chance& chance) {
     case 3: {  // a column goes
       const std::size_t column = below(fields.size(), chance);
       for (std::string& each : lines) {
-        std::vector<std::string> rest = split(each, ',');
+        std::vector<std::string> rest = split(each, separator);
         if (column < rest.size()) rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(column));
-        each = joined(rest, ',');
+        each = joined(rest, separator);
       }
       break;
     }
     case 4:
       std::swap(any_of(fields, chance), any_of(fields, chance));
-      line = joined(fields, ',');
+      line = joined(fields, separator);
       break;
     default:
       change_field(any_of(fields, chance), chance);
-      line = joined(fields, ',');
+      line = joined(fields, separator);
   }
   text = joined(lines, '\n');
   return true;
@@ -242,7 +243,7 @@ void mutate_bytes(std::string& text, Chance& chance) {
 std::string mutated(const std::string& text, Shape shape, Chance& chance, const ByteMutation& bytes) {
   std::string other = text;
   const auto change = shape == Shape::json ? mutate_json : shape == Shape::csv ? mutate_csv : mutate_sealed;
-  if (below(4, chance) == 0 || !change(other, chance)) bytes(other);
+  if (shape == Shape::binary || below(4, chance) == 0 || !change(other, chance)) bytes(other);
   return other;
 }
 

@@ -66,7 +66,7 @@ std::vector<std::string> seeds(const Reader& reader, const std::filesystem::path
 
 std::vector<Reader> readers(const std::filesystem::path& scene) {
   std::vector<Reader> all;
-  for (const auto& room : {readers_of_model, readers_of_dem, readers_of_the_law}) {
+  for (const auto& room : {readers_of_model, readers_of_dem, readers_of_imports, readers_of_the_law}) {
     for (Reader& reader : room(scene)) {
       if (!reader.file.empty()) reader.file = scene / reader.file;
       all.push_back(std::move(reader));

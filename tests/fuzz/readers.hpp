@@ -14,7 +14,8 @@ namespace grainlaw::fuzz {
 
 enum class Shape {
   json,
-  csv,
+  csv,     ///< lines of fields between commas or, without any, blanks
+  binary,  ///< bytes
   sealed,  ///< of dem/files/sealed_file.hpp without the checksum, which is put behind the mutated bytes
 };
 
@@ -47,6 +48,7 @@ std::string content(const std::filesystem::path& file);
 // What the readers are made of, by room:
 std::vector<Reader> readers_of_model(const std::filesystem::path& scene);
 std::vector<Reader> readers_of_dem(const std::filesystem::path& scene);
+std::vector<Reader> readers_of_imports(const std::filesystem::path& scene);
 std::vector<Reader> readers_of_the_law(const std::filesystem::path& scene);  ///< model, fit, predict, chain
 
 /// Throws Finding when what was read cannot be written, or `again` does not read it back as the same text.

@@ -93,6 +93,37 @@ for name in path spec test parameters prior dataset; do
     if [[ -e $file ]]; then cp "$file" "seeds/schema/$name-$(basename "$file")"; fi
   done
 done
+# Tables and particles of others, each with a mapping that names it.
+mkdir -p {mapping,table,npy,npz,dump,dump-local,xyz,vtp,vtp-encoded,spheres-text,particles} seeds/{mapping,particles}
+packing='"packings": {"p": {"seed": 1, "particles": 1000, "mean_radius": 1e-3, "stiffness": 1e8}}'
+series() { echo "{$packing, \"tests\": [{\"name\": \"t\", \"role\": \"validation\", \"series\": {$1}}]}"; }
+series '"file": "table.csv"' >table/mapping.json
+series '"file": "table.npz"' >npz/mapping.json
+series '"file": "table.npy", "names": ["nu", "strain_xx", "strain_yy", "strain_zz", "stress_xx", "stress_yy", "stress_zz"]' >npy/mapping.json
+head -7 "$source/examples/starters/dataset/D2-0.68-s1.csv" | tee mapping/table.csv >table/table.csv
+"$grainlaw" export dataset --format npz -o "$work/npz" >/dev/null
+cp "$work/npz/D2-0.68-s1.npz" npz/table.npz
+awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next } { print $(c["nu"]), $(c["strain_xx"]), $(c["strain_yy"]),
+  $(c["strain_zz"]), $(c["stress_xx[Pa]"]), $(c["stress_yy[Pa]"]), $(c["stress_zz[Pa]"]) }' table/table.csv |
+  perl -e '@n = map { split } <STDIN>; $h = sprintf("%-117s\n", "{\x27descr\x27: \x27<f8\x27, \x27fortran_order\x27: False, \x27shape\x27: (6, 7), }");
+    print "\x93NUMPY\x01\x00", pack("v", length $h), $h, pack("d<*", @n)' >npy/table.npy
+series '"file": "table.csv", "sign": {"strain": "tension"}, "units": {"stress": "Pa"}' | jq -c '.series = {delimiter: "comma"} | .tests[0].path = {segments: [{mode: "D2", extent: {eps_dev: 0.3}}]} |
+  .tests[0].path_tolerance = 0.01' >seeds/mapping/path.json
+series '"file": "table.csv"' >mapping/mapping.json
+particles() { echo "{\"packings\": {\"p\": {\"seed\": 1, \"stiffness\": 1e8}}, \"tests\": [{\"name\": \"t\", \"role\": \"validation\", \"path_tolerance\": 0.01, \"particles\": {$1}}]}"; }
+for format in lammps-dump xyz vtp; do "$grainlaw" export "$work/sim" --format $format -o "$work/$format" >/dev/null; done
+local='"format": "lammps-dump", "files": ["spheres.dump"], "contacts": {"files": ["contacts.dump"]}'
+particles "$local" | tee particles/mapping.json >dump-local/mapping.json
+particles '"format": "lammps-dump", "files": ["spheres.dump"], "contact_viscosity": 1, "density": 2000' | tee seeds/particles/viscous.json >dump/mapping.json
+for folder in dump dump-local particles; do cp "$work/lammps-dump/frames.spheres.dump" $folder/spheres.dump; cp "$work/lammps-dump/frames.contacts.dump" $folder/contacts.dump; done
+particles '"format": "xyz", "files": ["frames.xyz"]' >xyz/mapping.json
+cp "$work/xyz/frames.xyz" xyz
+particles '"format": "vtk", "files": ["spheres.vtp", "last.vtp"]' | tee vtp-encoded/mapping.json >vtp/mapping.json
+cp "$work"/vtp/*end*.spheres.vtp vtp/last.vtp
+particles '"format": "table", "files": ["spheres.txt", "last.txt"], "cells": {"file": "cells.csv", "lengths": ["Lx[m]", "Ly[m]", "Lz[m]"], "time": "time[s]"}' >spheres-text/mapping.json
+cp "$source/examples/import/yade/sample/D2/000.spheres.txt" spheres-text/spheres.txt
+cp "$source/examples/import/yade/sample/D2/003.spheres.txt" spheres-text/last.txt
+sed -n '1,2p;5p' "$source/examples/import/yade/sample/D2.csv" >spheres-text/cells.csv
 cat >seeds/json/all.json <<'JSON'
 {"a": [0, -1, 1.5e-3, 1e308, 18446744073709551615, true, false, null, "\u00e9\ud83d\ude00\\\"\n", {}, []], "b": {"c": [[[]]]}} // end
 JSON
