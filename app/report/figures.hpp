@@ -29,8 +29,10 @@ Figure shear_law_figure(const chain::ReportInput& input);
 Figure residual_figure(const chain::ReportInput& input);
 
 /// P* (over that of ISO unloading at the same density where it has one), s_par, F_par against eps_dev of one prediction by the
-/// recommended rung with its bands, others behind toggles, and of the DEM runs of its path; below, the residual in units of the band.
-Figure prediction_figure(const predict::PredictionFolder& prediction, const CalibratedLaw& law, std::size_t index);
+/// recommended rung with its bands, others behind toggles, and of the DEM runs of its path, those of another prediction of the same
+/// path by another engine, too; below, the residual in units of the band.
+Figure prediction_figure(const std::vector<predict::PredictionFolder>& predictions, std::size_t index,
+                         const CalibratedLaw& law);
 std::string prediction_id(std::size_t index);  ///< of that figure
 
 /// E_kin/E_pot, |energy residual|, inertial number against nu on the isotropic branches.

@@ -5,6 +5,7 @@
 
 #include "app/report/figures.hpp"
 #include "app/report/series.hpp"
+#include "model/files/path_json.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -35,12 +36,40 @@ bool strain_grows(const std::vector<Row>& rows) {
   return std::is_sorted(rows.begin(), rows.end(), less);
 }
 
+/// Runs of one path by another engine than that of the prediction's own.
+struct OtherRuns {
+  std::string engine;
+  std::vector<TestRecord> tests;
+};
+
+/// What ran the particles, as in SPEC; empty for data of others, which do not say.
+std::string engine_of(const PredictionFolder& prediction) {
+  if (!prediction.dem || !prediction.dem->spec.is_object()) return "";
+  return prediction.dem->spec.value("engine", "grainlaw");
+}
+
+std::vector<OtherRuns> other_runs(const std::vector<PredictionFolder>& predictions, std::size_t index) {
+  std::vector<OtherRuns> others;
+  const PredictionFolder& own = predictions[index];
+  for (const PredictionFolder& other : predictions) {
+    const std::string engine = engine_of(other);
+    if (engine.empty() || engine == engine_of(own) || path_to_json(other.path) != path_to_json(own.path)) continue;
+    others.push_back({engine, chain::dem_records(other)});
+  }
+  return others;
+}
+
+std::string runs_in_words(const std::string& engine, std::size_t count) {
+  return fmt::format("{}, {} {}", engine, count, count == 1 ? "run" : "runs");
+}
+
 /// What a prediction's figure shows over what: deviatoric strain, or the length travelled when the path turns; and the unit of the
 /// pressure: where ISO unloading has one all along the path, that at the same density, else none.
 struct Shown {
   const PredictionFolder& prediction;
   const LawParameters<double>& parameters;
   std::vector<TestRecord> dem;
+  std::vector<OtherRuns> others;
   bool by_strain = true, by_ratio = true;
 
   double x(const Observation& row) const { return by_strain ? row.eps_dev : row.shear_path; }
@@ -56,17 +85,20 @@ struct Shown {
   }
 };
 
-Shown shown_of(const PredictionFolder& prediction, const CalibratedLaw& law) {
-  Shown shown{prediction, law.parameters, chain::dem_records(prediction)};
+Shown shown_of(const std::vector<PredictionFolder>& predictions, std::size_t index, const CalibratedLaw& law) {
+  const PredictionFolder& prediction = predictions[index];
+  Shown shown{prediction, law.parameters, chain::dem_records(prediction), other_runs(predictions, index)};
+  std::vector<TestRecord> all = shown.dem;
+  for (const OtherRuns& other : shown.others) all.insert(all.end(), other.tests.begin(), other.tests.end());
   shown.by_strain =
-      std::all_of(shown.dem.begin(), shown.dem.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
+      std::all_of(all.begin(), all.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
       std::all_of(prediction.curves.begin(), prediction.curves.end(),
                   [](const PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
   const double least = kAboveJamming * law.parameters.isotropic.pressure.nu_c;
   for (const PredictedCurve& drawn : prediction.curves) {
     for (const PredictedRow& row : drawn.prediction.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
   }
-  for (const TestRecord& test : shown.dem) {
+  for (const TestRecord& test : all) {
     for (const Observation& row : test.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
   }
   shown.by_ratio = shown.by_ratio && is_known(density_curve("P_star"), law);
@@ -138,12 +170,19 @@ Panel value_panel(const Shown& shown, const Predicted& quantity) {
     panel.y.include = 0;
   }
   const auto x = [&](const auto& row) { return shown.x(row); };
-  for (const TestRecord& test : shown.dem) {
-    const std::string label = fmt::format("DEM, {} {}", shown.dem.size(), shown.dem.size() == 1 ? "run" : "runs");
-    panel.series.push_back(
-        through(open_symbols(plain(label), Colour::grey, Marker::circle, 2), symbol_rows(test, kSymbolsOfARun), x,
-                [&](const Observation& row) { return row.*quantity.measured / shown.unit(quantity, row.nu); }));
-  }
+  const auto add_runs = [&](const std::string& engine, const std::vector<TestRecord>& tests, Colour colour,
+                            Marker marker) {
+    for (const TestRecord& test : tests) {
+      panel.series.push_back(through(open_symbols(plain(runs_in_words(engine, tests.size())), colour, marker, 2),
+                                     symbol_rows(test, kSymbolsOfARun), x, [&](const Observation& row) {
+                                       return row.*quantity.measured / shown.unit(quantity, row.nu);
+                                     }));
+    }
+  };
+  for (const OtherRuns& other : shown.others)
+    add_runs("DEM by " + other.engine, other.tests, Colour::orange, Marker::square);
+  add_runs(shown.others.empty() ? "DEM" : "DEM by " + engine_of(shown.prediction), shown.dem, Colour::grey,
+           Marker::circle);
   const std::vector<const PredictedCurve*> curves = distinct_curves(shown.prediction);
   const PredictedCurve* const banded = banded_curve(shown.prediction, curves);
   for (const PredictedCurve* drawn : curves) {
@@ -210,8 +249,10 @@ Panel residual_panel(const Shown& shown, const Predicted& quantity) {
 
 std::string prediction_id(std::size_t index) { return fmt::format("prediction-{}", index + 1); }
 
-Figure prediction_figure(const predict::PredictionFolder& prediction, const CalibratedLaw& law, std::size_t index) {
-  const Shown shown = shown_of(prediction, law);
+Figure prediction_figure(const std::vector<predict::PredictionFolder>& predictions, std::size_t index,
+                         const CalibratedLaw& law) {
+  const predict::PredictionFolder& prediction = predictions[index];
+  const Shown shown = shown_of(predictions, index, law);
   const bool compared = !shown.dem.empty();
   std::vector<Panel> panels;
   for (const Predicted& quantity : kPredicted) panels.push_back(value_panel(shown, quantity));

@@ -63,7 +63,7 @@ Section predictions(const chain::ReportInput& input, const std::vector<chain::Pa
     section.blocks.push_back(folded("Path by path: the rehearsals", table));
   for (std::size_t i = 0; i < input.predictions.size(); ++i) {
     const predict::PredictionFolder& prediction = input.predictions[i];
-    Figure figure = prediction_figure(prediction, input.calibration.law, i);
+    Figure figure = prediction_figure(input.predictions, i, input.calibration.law);
     if (prediction.provenance.is_object()) figure.command = prediction.provenance.value("command", "");
     section.blocks.push_back(drawn(figure));
     section.blocks.push_back(folded(prediction.name + ": run by run", prediction_table(prediction)));

@@ -23,7 +23,7 @@ struct Scene {
       }
     }
   }
-  Figure figure() const { return prediction_figure(prediction, input.calibration.law, 0); }
+  Figure figure() const { return prediction_figure(input.predictions, 0, input.calibration.law); }
 };
 
 const Series& labelled(const Panel& panel, const std::string& words) {
@@ -86,6 +86,28 @@ TEST(ReportPrediction, ResidualsCountInBandsOfASingleRun) {
   }
   const Series difference = labelled(scene.figure().panels[4], "evolution, recommended");
   EXPECT_NEAR(difference.y[7], run.rows[7].s_par - rows[7].s_par, 1e-12) << "without a band in its own unit";
+}
+
+TEST(ReportPrediction, RunsOfTheSamePathByAnotherEngineAreShown) {
+  Scene scene;
+  const std::size_t runs = scene.prediction.dem->tests.size();
+  predict::PredictionFolder other = scene.prediction;
+  other.name += "-lammps";
+  scene.prediction.dem->spec = {{"particles", 1000}};
+  other.dem->spec = {{"particles", 1000}, {"engine", "lammps"}};
+  for (Observation& row : other.dem->tests[0].record.rows) row.s_par += 1;
+  scene.input.predictions.push_back(other);
+  const auto figure = [&](std::size_t index) {
+    return prediction_figure(scene.input.predictions, index, scene.input.calibration.law);
+  };
+  const Panel ours = figure(0).panels[1];
+  const Series &own = labelled(ours, "DEM by grainlaw"), &theirs = labelled(ours, "DEM by lammps");
+  EXPECT_EQ(theirs.x, own.x);
+  EXPECT_NEAR(theirs.y.back(), own.y.back() + 1, 1e-12);
+  EXPECT_NE(theirs.colour, own.colour);
+  EXPECT_EQ(figure(1).panels[1].series.size(), ours.series.size()) << "the other one's shows both as well";
+  scene.input.predictions[1].path.nu += 0.01;
+  EXPECT_EQ(figure(0).panels[1].series.size(), ours.series.size() - runs) << "not of another path";
 }
 
 TEST(ReportShear, TheRecommendedRungIsDrawnOverTheTestsOfItsPath) {
