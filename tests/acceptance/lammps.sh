@@ -50,6 +50,21 @@ lammps_curves() {
   done
 }
 
+# Runs of one path by both engines on the page of a law: series of both in one figure.
+lammps_page() {
+  local engine law=$lammps_out/law
+  "$bin/grainlaw" calibrate --dataset examples/starters/dataset -o "$law" --quiet >/dev/null || (($? == 3))
+  echo '{"initial": {"nu": 0.72}, "seeds": [11, 12], "segments": [{"mode": "D2", "extent": {"eps_dev": 0.1}}]}' >"$lammps_out/path.json"
+  for engine in grainlaw lammps; do
+    "$bin/grainlaw" predict "$law/parameters.json" "$lammps_out/path.json" --dem --spec "$lammps_out/$engine.json" --store "$lammps_out/$engine" \
+      -o "$law/predictions/d2-$engine" --quiet >/dev/null
+  done
+  "$bin/grainlaw" report "$law" --quiet >/dev/null
+  for engine in grainlaw lammps; do
+    figure "lammps.page.figures_with_runs_by.$engine" "$(grep -o "DEM by $engine, 2 runs" "$law/report.html" | wc -l)" ">=2"
+  done
+}
+
 # First rows of packing SEED by our engine in double precision (mixed rounds positions to 32 bits), of a cell that begins at rest.
 lammps_double() {
   jq 'del(.engine) | .precision = "double" | .driving = "cosine" | .segments[0].extent.eps_dev = 0.001' "$lammps_out/same/$1.json" >"$lammps_out/same/$1-double.json"
@@ -86,7 +101,7 @@ PY
 # lammps_seconds ENGINE LAUNCHER PARTICLES TILES STEPS: wall time of a run of so many steps, and its steps.
 lammps_seconds() {
   local spheres=$lammps_out/spheres-$3-$4 folder
-  folder=$(mktemp -d "$lammps_out/time.XXXXXX")
+  folder=$(mktemp -d -p "$lammps_out")
   # D2 at a constant rate of 276 1/s; a step takes 1.4e-7 s or so at a fifth of the shortest collision
   jq -n --arg engine "$1" --arg spheres "$spheres.csv" --slurpfile cell "$spheres.cell.json" --argjson steps "$5" '{engine: $engine, spheres: $spheres,
     cell: $cell[0], strain_rate: 276, rows: 2, driving: "constant", segments: [{mode: "D2", extent: {eps_dev: (1.6e-5 * $steps)}}]}' >"$folder/test.json"
@@ -136,6 +151,7 @@ lammps_figures() {
   rm -rf "$lammps_out"
   mkdir -p "$lammps_out"
   lammps_curves
+  lammps_page
   lammps_times
   [[ $quick == yes ]] || lammps_friction
 }
