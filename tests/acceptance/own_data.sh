@@ -49,7 +49,7 @@ law() { # data
       largest) figure law.largest_distance_over_95_percent "$value" stated ;;
     esac
   done <<<"$lines"
-  local rung quantity error
+  local quantity error
   for quantity in P_star:"<=0.02" s_par:"<=0.25" F_par:"<=0.4"; do
     error=$(jq -s --arg q "${quantity%%:*}" '[.[].comparisons[] | select(.seed == null and .initial == "law" and .model == "reduced")
       .quantities[] | select(.quantity == $q).normalised_rms] | if length > 0 then add / length else "missing" end' "$work"/laws/mu0/predictions/*/comparison.json)
@@ -59,11 +59,10 @@ law() { # data
   figure law.report.numbers "$("$bin/grainlaw" report "$work/laws/mu0" --json --quiet | jq '[.. | numbers] | length')" ">=3000"
 }
 
-
 # Tests of the build by name: how many there are, and how many failed.
 tests_of() { # name regular-expression least
   local log=$work/$1.txt
-  ctest --test-dir build/release -R "$2" --output-on-failure >"$log" || true
+  ctest --test-dir build/release -R "$2" --verbose >"$log" || true
   figure "$1.tests" "$(grep -cE 'Test +#[0-9]+:.*Passed' "$log" || true)" ">=$3"
   figure "$1.failed_or_skipped" "$(grep -cE 'Test +#[0-9]+:.*(Failed|Skipped|Timeout)' "$log" || true)" "<=0"
 }
@@ -78,10 +77,39 @@ friction() {
   done
 }
 
+# What Python adds to a call, and how soon it stops; both programs in turns.
+python_calls() {
+  local line
+  tests_of python '^python\.' 8
+  figure python.interrupt_to_end.seconds "$(sed -n 's/.*figure python.interrupt.seconds \([0-9.]*\).*/\1/p' "$work/python.txt")" "<=1"
+  while read -r line; do
+    case $line in
+      overhead.*) figure "python.${line%% *}.us" "${line##* }" "<=5" ;;
+      batch.speed*) figure python.batch.speed_over_cpp "${line##* }" ">=0.9" ;;
+    esac
+  done < <(PYTHONPATH=build/release/python $python tests/bench/python_law.py "$bin/bench_law_calls" "$work/laws/mu0/parameters.json")
+}
+
+# What 100 frames on the way of D2 cost: the same run with and without, in turns, the least of five each.
+frames() {
+  local turn kind
+  jq -n '{particles: 1000, strain_rate: 552, rows: 100, initial: {nu: 0.72}, segments: [{mode: "D2", extent: {eps_dev: 0.1}}]}' >"$work/frames.json"
+  "$bin/grainlaw" simulate "$work/frames.json" -o "$work/frames" --quiet >/dev/null
+  jq -n --arg state "$work/frames/end.state" '{state: $state, strain_rate: 552, rows: 100, segments: [{mode: "D2", extent: {eps_dev: 0.1}}]}' >"$work/sheared.json"
+  for turn in 1 2 3 4 5; do
+    for kind in 0 100; do
+      "$bin/grainlaw" simulate "$work/sheared.json" -o "$work/sheared-$kind-$turn" --frames $kind --threads 1 --quiet >/dev/null
+    done
+  done
+  figure frames.cost "$(for kind in 0 100; do jq -s 'map(.cost.seconds) | min' "$work"/sheared-$kind-*/simulation.json; done |
+    awk 'NR == 1 { plain = $1 } END { printf "%.4f", $1 / plain - 1 }')" "<=0.03"
+}
+
 averages
 law $lammps/data
 friction
 tests_of export '^cli\.export' 1
-tests_of python '^python\.' 8
+python_calls
+frames
 if [[ $quick == no ]]; then tests_of fuzz 'fuzz' 1; fi
 finish_figures

@@ -159,6 +159,7 @@ class Interruption(unittest.TestCase):
         seconds, (out, err) = self.interrupted(process, lambda: len(finished("out")) >= 2)
         self.assertEqual(process.returncode, 0, err)
         self.assertRegex(out, "^interrupted .* KeyboardInterrupt$")
+        print(f"figure python.interrupt.seconds {seconds:.3f}", flush=True)
         self.assertLess(seconds, 1.0 + 0.5, "one second to stop; the interpreter has to end, too")
         before = {file: os.stat(file).st_mtime_ns for file in finished("out")}
         self.assertEqual(len(before), 2)
