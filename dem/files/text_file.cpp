@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "model/files/one_line.hpp"
+
 namespace grainlaw::dem {
 namespace {
 
@@ -35,14 +37,10 @@ bool TextFile::next() {
 InvalidInput TextFile::refusal(std::size_t line, std::string_view column, const std::string& why) const {
   const std::string where =
       column.empty() ? fmt::format("line {}", line) : fmt::format("line {}, column {}", line, column);
-  return InvalidInput(fmt::format("{}: {}: {}", file_.string(), where, why));
+  return InvalidInput(one_line(fmt::format("{}: {}: {}", file_.string(), where, why)));
 }
 
-std::string in_quotes(std::string_view text) {
-  std::string shown;
-  for (const char c : text.substr(0, 40)) shown += (c >= ' ' && c <= '~') ? c : '?';
-  return "'" + shown + (text.size() > 40 ? "...'" : "'");
-}
+std::string in_quotes(std::string_view text) { return fmt::format("'{}'", one_line(text, 40)); }
 
 void split_words(std::string_view line, std::vector<std::string_view>& words, bool commas) {
   words.clear();

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "model/files/one_line.hpp"
+
 namespace grainlaw::dem {
 
 std::string ForeignFrame::where(std::size_t row) const {
@@ -16,7 +18,7 @@ std::string ForeignFrame::where(std::size_t row) const {
 }
 
 InvalidInput ForeignFrame::refusal(const std::string& why, std::size_t row, const std::string& column) const {
-  return InvalidInput(where(row) + (column.empty() ? "" : ", column " + in_quotes(column)) + ": " + why);
+  return InvalidInput(one_line(where(row) + (column.empty() ? "" : ", column " + in_quotes(column)) + ": " + why));
 }
 
 std::vector<std::string> component_titles(const std::string& name, std::size_t components) {

@@ -112,10 +112,14 @@ class SeriesOfFrames {
     state.packing = frame.packing;
     ThreadTeam team(1);
     const CellMotion motion{frame.packing.H, L, Transport::homogeneous};
-    const auto view = view_contacts(state, build_list(state.packing, 0, team), motion);
-    const ContactSums sums = sum_contacts(view->field, state.packing.radius, team);
-    row.E_pot = sums.elastic;
-    return sums;
+    try {
+      const auto view = view_contacts(state, build_list(state.packing, 0, team), motion);
+      const ContactSums sums = sum_contacts(view->field, state.packing.radius, team);
+      row.E_pot = sums.elastic;
+      return sums;
+    } catch (const Error& error) {
+      throw frame.source.refusal(error.what());
+    }
   }
 
   void set_path(Observation& row, const Eigen::Matrix3d& F, const ForeignFrame& frame) {

@@ -25,7 +25,7 @@ call() {
 # judge accepted|refused READER FILE CASE: FILE holds the case
 judge() {
   local code=0 lines
-  (ulimit -v 2500000 -t 2; call "$2" "$3") >stdout 2>stderr || code=$?
+  (ulimit -v 2500000 -t 10; call "$2" "$3") >stdout 2>stderr || code=$?
   lines=$(grep -c . stderr) || true
   if [[ $1 == accepted ]]; then
     [[ $code == 0 ]] || fail "$3, $4: exit code $code: $(head -c 400 stderr)"

@@ -29,6 +29,7 @@ JSON
 (
   cd "$work" &&
     "$grainlaw" simulate test.json -o sim &&
+    "$grainlaw" simulate <(jq '.particles = 40' test.json) -o framed --frames 1 &&
     "$grainlaw" calibrate --dataset "$source/examples/starters/dataset" -o law &&
     "$grainlaw" predict law/parameters.json path.json --model reduced --dem --spec spec.json -o prediction &&
     "$grainlaw" study fit law --vary packings=2 -o study &&
@@ -96,10 +97,11 @@ done
 # Tables and particles of others, each with a mapping that names it.
 mkdir -p {mapping,table,npy,npz,dump,dump-local,xyz,vtp,vtp-encoded,spheres-text,particles} seeds/{mapping,particles}
 packing='"packings": {"p": {"seed": 1, "particles": 1000, "mean_radius": 1e-3, "stiffness": 1e8}}'
-series() { echo "{$packing, \"tests\": [{\"name\": \"t\", \"role\": \"validation\", \"series\": {$1}}]}"; }
-series '"file": "table.csv"' >table/mapping.json
-series '"file": "table.npz"' >npz/mapping.json
-series '"file": "table.npy", "names": ["nu", "strain_xx", "strain_yy", "strain_zz", "stress_xx", "stress_yy", "stress_zz"]' >npy/mapping.json
+series() { echo "{\"source\": \"s\", $packing, \"tests\": [{\"name\": \"t\", \"role\": \"validation\", \"series\": {$1}}]}"; }
+said='"sign": {"strain": "tension"}, "units": {"stress": "Pa"}'
+series "\"file\": \"table.csv\", $said" | tee mapping/mapping.json >table/mapping.json
+series "\"file\": \"table.npz\", $said" >npz/mapping.json
+series "$said"', "file": "table.npy", "names": ["nu", "strain_xx", "strain_yy", "strain_zz", "stress_xx", "stress_yy", "stress_zz"]' >npy/mapping.json
 head -7 "$source/examples/starters/dataset/D2-0.68-s1.csv" | tee mapping/table.csv >table/table.csv
 "$grainlaw" export dataset --format npz -o "$work/npz" >/dev/null
 cp "$work/npz/D2-0.68-s1.npz" npz/table.npz
@@ -107,11 +109,10 @@ awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) c[$i] = i; next } { print $(c["nu"]
   $(c["strain_zz"]), $(c["stress_xx[Pa]"]), $(c["stress_yy[Pa]"]), $(c["stress_zz[Pa]"]) }' table/table.csv |
   perl -e '@n = map { split } <STDIN>; $h = sprintf("%-117s\n", "{\x27descr\x27: \x27<f8\x27, \x27fortran_order\x27: False, \x27shape\x27: (6, 7), }");
     print "\x93NUMPY\x01\x00", pack("v", length $h), $h, pack("d<*", @n)' >npy/table.npy
-series '"file": "table.csv", "sign": {"strain": "tension"}, "units": {"stress": "Pa"}' | jq -c '.series = {delimiter: "comma"} | .tests[0].path = {segments: [{mode: "D2", extent: {eps_dev: 0.3}}]} |
-  .tests[0].path_tolerance = 0.01' >seeds/mapping/path.json
-series '"file": "table.csv"' >mapping/mapping.json
-particles() { echo "{\"packings\": {\"p\": {\"seed\": 1, \"stiffness\": 1e8}}, \"tests\": [{\"name\": \"t\", \"role\": \"validation\", \"path_tolerance\": 0.01, \"particles\": {$1}}]}"; }
-for format in lammps-dump xyz vtp; do "$grainlaw" export "$work/sim" --format $format -o "$work/$format" >/dev/null; done
+jq -c '.series = {delimiter: "comma"} | .tests[0].path = {segments: [{mode: "D2", extent: {eps_dev: 0.3}}]} |
+  .tests[0].path_tolerance = 0.01' mapping/mapping.json >seeds/mapping/path.json
+particles() { echo "{\"source\": \"s\", \"packings\": {\"p\": {\"seed\": 1, \"stiffness\": 1e8}}, \"tests\": [{\"name\": \"t\", \"role\": \"validation\", \"path_tolerance\": 0.01, \"particles\": {$1}}]}"; }
+for format in lammps-dump xyz vtp; do "$grainlaw" export "$work/framed" --format $format -o "$work/$format" >/dev/null; done
 local='"format": "lammps-dump", "files": ["spheres.dump"], "contacts": {"files": ["contacts.dump"]}'
 particles "$local" | tee particles/mapping.json >dump-local/mapping.json
 particles '"format": "lammps-dump", "files": ["spheres.dump"], "contact_viscosity": 1, "density": 2000' | tee seeds/particles/viscous.json >dump/mapping.json
@@ -119,7 +120,15 @@ for folder in dump dump-local particles; do cp "$work/lammps-dump/frames.spheres
 particles '"format": "xyz", "files": ["frames.xyz"]' >xyz/mapping.json
 cp "$work/xyz/frames.xyz" xyz
 particles '"format": "vtk", "files": ["spheres.vtp", "last.vtp"]' | tee vtp-encoded/mapping.json >vtp/mapping.json
-cp "$work"/vtp/*end*.spheres.vtp vtp/last.vtp
+cp "$work/vtp/frame-0000.spheres.vtp" vtp/spheres.vtp
+cp "$work/vtp/frame-0001.spheres.vtp" vtp/last.vtp
+cp vtp/last.vtp vtp-encoded
+# numbers as base64 of their bytes behind their count, as VTK writes them
+perl -0777 -pe 's{type="(Float64|Int64|Int32)"([^>]*)format="ascii">\n(.*?)\n</}{
+    my %letter = (Float64 => "d<", Int64 => "q<", Int32 => "l<"); my $b = pack("$letter{$1}*", split(" ", $3)); my $head = "type=\"$1\"$2";
+    $b = pack("V", length $b) . $b; my $pad = (3 - length($b) % 3) % 3; $b = pack("u", $b); $b =~ s/^.//mg; $b =~ s/\n//g;
+    $b =~ tr#` -_#AA-Za-z0-9+/#; substr($b, length($b) - $pad) = "=" x $pad; "${head}format=\"binary\">\n$b\n</"}gse' \
+  <vtp/spheres.vtp >vtp-encoded/spheres.vtp
 particles '"format": "table", "files": ["spheres.txt", "last.txt"], "cells": {"file": "cells.csv", "lengths": ["Lx[m]", "Ly[m]", "Lz[m]"], "time": "time[s]"}' >spheres-text/mapping.json
 cp "$source/examples/import/yade/sample/D2/000.spheres.txt" spheres-text/spheres.txt
 cp "$source/examples/import/yade/sample/D2/003.spheres.txt" spheres-text/last.txt

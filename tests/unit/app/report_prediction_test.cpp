@@ -96,7 +96,7 @@ TEST(ReportPrediction, RunsOfTheSamePathByAnotherEngineAreShown) {
   scene.prediction.dem->spec = {{"particles", 1000}};
   other.dem->spec = {{"particles", 1000}, {"engine", "lammps"}};
   for (Observation& row : other.dem->tests[0].record.rows) row.s_par += 1;
-  scene.input.predictions.push_back(other);
+  scene.input.predictions = {scene.prediction, other};
   const auto figure = [&](std::size_t index) {
     return prediction_figure(scene.input.predictions, index, scene.input.calibration.law);
   };

@@ -100,6 +100,15 @@ TEST_F(ForeignFrameTest, TextOfYade) {
 }
 
 // Two points in text, in base64 as a whole and with the header by itself, as VTK writes it; compressed in tests/cli/export.sh.
+TEST_F(ForeignFrameTest, RefusalsAreOneLineOfText) {
+  ForeignFrame frame;
+  frame.file = "file";
+  frame.place = "step\t1";
+  const std::string message = frame.refusal("has no column 'id', but a\r, b\x1b[2J", 3, "x\ny").what();
+  EXPECT_TRUE(message.starts_with("file: step")) << message;
+  for (const char c : message) EXPECT_GE(c, ' ') << message;
+}
+
 TEST_F(ForeignFrameTest, PolyDataOfVtk) {
   const auto file = [](const std::string& points, const std::string& radius) {
     return "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt32\"><PolyData><Piece "

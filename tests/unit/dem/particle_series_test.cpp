@@ -266,6 +266,8 @@ TEST_F(ParticleSeriesTest, FramesThatDoNotFitAreRefused) {
   EXPECT_NE(text("id x y z r\n1 .001 .001 .001 -.001\n2 .006 .006 .006 .001\n").find("column 'r': is not positive"),
             std::string::npos);
   EXPECT_NE(text("id x y z r\n1.5 .001 .001 .001 .001\n").find("is no integer"), std::string::npos);
+  EXPECT_NE(text("id x y z r\n1 .001 .001 .001 .001\n2 .001 .001 .001 .001\n").find("b.txt: spheres 1 and 2 share one"),
+            std::string::npos);
   EXPECT_NE(text("1 2 3 4\n").find("names no columns"), std::string::npos);
   EXPECT_NE(text("").find("b.txt: line 1: the file is empty"), std::string::npos);
   put("b.txt", good);
