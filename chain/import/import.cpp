@@ -9,6 +9,7 @@
 #include "chain/import/particles.hpp"
 #include "chain/import/series.hpp"
 #include "chain/import/straight_path.hpp"
+#include "model/files/column.hpp"
 #include "model/files/csv_table.hpp"
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
@@ -59,6 +60,17 @@ void check_corners(const ForeignRows& foreign, const TestRecord& record) {
                       "each corner, "
                       "correct the path, or leave it out to have it found",
                       foreign.place(i - 1, "strain"), last.segment, before));
+  }
+}
+
+/// Products of given numbers may be too large for a number.
+void check_finite(const ForeignRows& foreign, const std::vector<Observation>& rows) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const Column<Observation>& column : columns_of<Observation>()) {
+      if (std::isinf(column.get(rows[i])))
+        throw InvalidInput(fmt::format("{}: {} becomes infinite; are the units and the packing's numbers right?",
+                                       foreign.place(i, column.name), column.name));
+    }
   }
 }
 
@@ -131,6 +143,7 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test) {
   check_corners(foreign, record);
   complete(record.rows, record.path, record.packing);
   check_series(record.rows, record.path, record.packing, foreign.place);
+  check_finite(foreign, record.rows);
   result.says = {
       fmt::format("{} rows", record.rows.size()),
       fmt::format("path {} {}", test.mapping.segments.empty() ? "found" : "given", path_text(record.path)),

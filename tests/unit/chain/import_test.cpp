@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "chain/import/quantity.hpp"
 #include "model/files/column.hpp"
+#include "model/files/series_csv.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::chain {
@@ -246,6 +248,19 @@ TEST_F(Import, RefusesWithFileLineColumnAndRemedy) {
                {"mapping.json: test t: series.columns.density: is no quantity"});
   expect_parts(why(nothing, declared + R"(, "columns": {"nu": "nu"})"), {"t.csv: misses the strain"});
   expect_parts(why(nothing, declared + R"(, "names": ["a"])"), {"t.csv: has 14 columns where names has 1"});
+}
+
+TEST_F(Import, RefusesWhatBecomesInfinite) {
+  const auto mapping =
+      read_mapping(put("mapping.json", R"({"source": "us", "packings": {"A": {"particles": 1000, "mean_radius": 1e-3,
+      "stiffness": 1e8}}, "tests": [{"name": "t", "role": "calibration", "series": {"file": "t.csv", "sign": {"strain": "tension"}}}]})"));
+  put("t.csv", series_text(ours("D2-0.71-s1").rows));
+  std::vector<ForeignTest> foreign = read_foreign(mapping, {});
+  EXPECT_EQ(testing::refusal([&] { imported(mapping, foreign[0]); }), "accepted");
+  foreign[0].foreign.rows[3].E_kin = std::numeric_limits<double>::infinity();
+  const std::string message = testing::refusal([&] { imported(mapping, foreign[0]); });
+  EXPECT_NE(message.find("line 5"), std::string::npos) << message;
+  EXPECT_NE(message.find("E_kin becomes infinite"), std::string::npos) << message;
 }
 
 TEST_F(Import, NeedsUnitsOfStressUnlessItHasNone) {
