@@ -16,8 +16,10 @@ namespace {
 constexpr std::size_t kPrefix = 16, kChecksum = 32;
 constexpr std::size_t kMaxHeader = 65536;
 
-void put_unsigned(std::string& out, std::uint64_t value, int bytes) {
-  for (int i = 0; i < bytes; ++i) out.push_back(static_cast<char>((value >> (8 * i)) & 0xff));
+void put_unsigned(std::string& out, std::uint64_t value, std::size_t bytes) {
+  char text[8];
+  for (std::size_t i = 0; i < bytes; ++i) text[i] = static_cast<char>((value >> (8 * i)) & 0xff);
+  out.append(text, bytes);
 }
 
 std::uint64_t get_unsigned(std::string_view bytes) {
@@ -65,20 +67,22 @@ std::uint64_t NumberReader::word() {
 }
 
 void write_sealed(const std::filesystem::path& file, const SealedFormat& format, const nlohmann::json& header,
-                  const NumberWriter& numbers) {
+                  const NumberWriter& numbers, WriteFile write) {
   const std::string text = header.dump();
   if (text.size() > kMaxHeader) throw Error(fmt::format("{}: the header is too long to be written", file.string()));
   if (!numbers.sound()) {
     throw Error(
         fmt::format("{}: is not written because a number is not finite or an array has another length", file.string()));
   }
-  std::string out(format.magic);
+  std::string out;
+  out.reserve(kPrefix + text.size() + numbers.bytes().size() + kChecksum);
+  out += format.magic;
   put_unsigned(out, format.version, 4);
   put_unsigned(out, text.size(), 4);
   out += text;
   out += numbers.bytes();
   out += sha256_bytes(out);
-  write_durably(file, out);
+  write(file, out);
 }
 
 void read_sealed(const std::filesystem::path& file, const SealedFormat& format,

@@ -1,7 +1,7 @@
 #pragma once
 // The envelope of the engine's binary files; integers and doubles little-endian:
 //   magic, 8 bytes | version u32 | length of the header u32 | header, JSON | numbers, 8 bytes each | SHA-256 of all before
-// Written durably (model/files/output.hpp). Read: checksum first, then everything else.
+// Written as model/files/output.hpp says. Read: checksum first, then everything else.
 
 #include <cstdint>
 #include <filesystem>
@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+
+#include "model/files/output.hpp"
 
 namespace grainlaw::dem {
 
@@ -23,6 +25,7 @@ class NumberWriter {
  public:
   void number(double value);
   void word(std::uint64_t value);
+  void reserve(std::size_t words) { bytes_.reserve(8 * words); }
   void refuse() { sound_ = false; }      ///< what was collected contradicts itself
   bool sound() const { return sound_; }  ///< every number was finite and nothing was refused
   const std::string& bytes() const { return bytes_; }
@@ -44,9 +47,12 @@ class NumberReader {
   std::string_view bytes_;
 };
 
+/// How a file is written: write_durably or write_whole.
+using WriteFile = void (*)(const std::filesystem::path& file, std::string_view bytes);
+
 /// Throws Error naming the file when it cannot be written whole or the numbers are not sound; the earlier file stays.
 void write_sealed(const std::filesystem::path& file, const SealedFormat& format, const nlohmann::json& header,
-                  const NumberWriter& numbers);
+                  const NumberWriter& numbers, WriteFile write = write_durably);
 
 /// Calls parse with header and numbers. Throws InvalidInput naming file and reason: missing, damaged, other version, or
 /// what parse threw (InvalidInput or an exception of the JSON library).

@@ -40,6 +40,8 @@ nlohmann::json state_header(const State& state) {
 
 void put_state(const State& state, NumberWriter& numbers) {
   const std::size_t n = state.packing.size();
+  constexpr std::size_t kArrays = 16, kScalars = 64;  // more or less
+  numbers.reserve(kArrays * n + kScalars);
   const auto put = [&](const double& x) { numbers.number(x); };
   const auto put_array = [&](const std::vector<double>& a) {
     if (a.size() != n) numbers.refuse();
@@ -87,10 +89,10 @@ State take_state(const nlohmann::json& header, NumberReader& numbers) {
   return state;
 }
 
-void write_state(const std::filesystem::path& file, const State& state) {
+void write_state(const std::filesystem::path& file, const State& state, WriteFile write) {
   NumberWriter numbers;
   put_state(state, numbers);
-  write_sealed(file, kFormat, state_header(state), numbers);
+  write_sealed(file, kFormat, state_header(state), numbers, write);
 }
 
 State read_state(const std::filesystem::path& file) {

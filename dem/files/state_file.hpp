@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kStateFileVersion = 1;  ///< grows with every cha
 
 /// Throws Error naming the file when it cannot be written whole or a number is not finite; the earlier file under that
 /// name then stays.
-void write_state(const std::filesystem::path& file, const State& state);
+void write_state(const std::filesystem::path& file, const State& state, WriteFile write = write_durably);
 
 /// The state bit for bit as written. Throws InvalidInput naming file and reason: damaged, other version, out of bounds.
 State read_state(const std::filesystem::path& file);

@@ -60,9 +60,9 @@ void PathFrames::keep(Stepper& stepper, int segment, double e) {
   state.digest = digest_;
   const Eigen::Vector3d L = stepper.motion().L.diagonal();
   const FramePlace place{static_cast<int>(places_.size()), state.time, segment, e, L[0], L[1], L[2]};
-  write_state(folder_ / frame_file(place.frame), state);
+  write_state(folder_ / frame_file(place.frame), state, write_whole);
   places_.push_back(place);
-  write_durably(folder_ / kFramesFile, table_text(places_));
+  write_whole(folder_ / kFramesFile, table_text(places_));
 }
 
 }  // namespace grainlaw::dem

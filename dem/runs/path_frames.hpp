@@ -1,6 +1,7 @@
 #pragma once
 // States on the way of an element test, at equal steps of the path: frame-0000.state at its start, then, in each segment, at
-// the first step that reaches e = length k/N. frames.csv says where each is. The run is the same with and without.
+// the first step that reaches e = length k/N. frames.csv says where each is. The run is the same with and without. They are
+// written whole but synced only when the run ends; one that the machine's death has damaged makes an interrupted run start anew.
 
 #include <filesystem>
 #include <string>

@@ -261,6 +261,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   State end = done.end;
   end.digest = key;
   write_state(folder / "end.state", end);
+  if (frames) sync_files_below(folder);
   const auto width = test.given ? std::nullopt : std::optional(o.packing.size_width);
   store.finish(key, request,
                {{"kind", "test"},

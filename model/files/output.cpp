@@ -61,6 +61,14 @@ void write_into(const fs::path& file, int descriptor, std::string_view bytes) {
   if (!written) fail_at(file, "written");
 }
 
+std::string content_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(in), {}};
+  if (!in.is_open() || in.bad())
+    throw Error(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+  return content;
+}
+
 /// A file that disappears unless it is renamed.
 class TemporaryFile {
  public:
@@ -82,12 +90,13 @@ class TemporaryFile {
     if (!write_to(descriptor_, bytes)) fail("written");
   }
 
-  void rename_to_final() {
-    if (::fsync(descriptor_) != 0) fail("synced");
+  void rename_to_final(bool synced) {
+    if (synced && ::fsync(descriptor_) != 0) fail("synced");
     // some file systems report a failed write only here
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("closed");
     if (std::rename(name_.c_str(), final_.c_str()) != 0) fail("renamed into place");
     renamed_ = true;
+    if (!synced) return;
     const int folder = ::open(folder_of(final_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder < 0) fail("synced");
     // EINVAL: a file system that cannot sync folders has nothing to sync
@@ -118,7 +127,33 @@ bool is_device(std::string_view name) {
 void write_durably(const fs::path& file, std::string_view bytes) {
   TemporaryFile temporary(file);
   temporary.write_all(bytes);
-  temporary.rename_to_final();
+  temporary.rename_to_final(true);
+}
+
+void write_whole(const fs::path& file, std::string_view bytes) {
+  TemporaryFile temporary(file);
+  temporary.write_all(bytes);
+  temporary.rename_to_final(false);
+}
+
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  const std::string temporary = temporary_name(to);
+  ::unlink(temporary.c_str());
+  if (::link(from.c_str(), temporary.c_str()) != 0) return copy_whole(from, to);
+  const bool renamed = std::rename(temporary.c_str(), to.c_str()) == 0;
+  const int error = errno;
+  ::unlink(temporary.c_str());  // still there where both names are this file's already
+  errno = error;
+  if (!renamed) fail_at(to, "renamed into place");
+}
+
+void sync_files_below(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = descriptor >= 0 && ::syncfs(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  errno = error;
+  if (!synced) fail_at(folder, "synced");
 }
 
 void write_as_named(const fs::path& file, std::string_view bytes) {
@@ -137,13 +172,9 @@ void write_as_named(const fs::path& file, std::string_view bytes) {
   write_durably(target, bytes);
 }
 
-void copy_durably(const fs::path& from, const fs::path& to) {
-  std::ifstream in(from, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad())
-    throw Error(fmt::format("{}: cannot be read: {}", from.string(), std::strerror(errno)));
-  write_durably(to, content);
-}
+void copy_durably(const fs::path& from, const fs::path& to) { write_durably(to, content_of(from)); }
+
+void copy_whole(const fs::path& from, const fs::path& to) { write_whole(to, content_of(from)); }
 
 void remove_leftovers(const fs::path& folder) {
   std::vector<fs::path> temporaries;

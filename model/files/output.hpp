@@ -14,6 +14,20 @@ namespace grainlaw {
 /// Throws Error naming the file, the operation and the system's reason when it cannot be written whole.
 void write_durably(const std::filesystem::path& file, std::string_view bytes);
 
+/// As write_durably(), but not synced, which is most of the time where there are many: the death of the program leaves it whole, that
+/// of the machine may damage it until sync_files_below().
+void write_whole(const std::filesystem::path& file, std::string_view bytes);
+
+/// Copies likewise. Throws Error, also when `from` cannot be read.
+void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// A second name for the file, where the file system has such; else a copy. What is written by the functions here later replaces one
+/// of the two and leaves the other. Throws Error, also when `from` cannot be read.
+void link_or_copy(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// All that was written into the file system of `folder` is on the disk. Throws Error.
+void sync_files_below(const std::filesystem::path& folder);
+
 /// A file of the user's own choice, outside a folder of results: through a link its target is written, durably; a device, a FIFO or
 /// a socket is written into, never replaced; "-" is standard output. Throws Error likewise, InvalidInput for a folder.
 void write_as_named(const std::filesystem::path& file, std::string_view bytes);

@@ -4,7 +4,6 @@
 #                task takes beyond its runs
 
 grainlaw=$(realpath "$bin/grainlaw")
-seconds_of() { local TIMEFORMAT=%R; { time "$@" >/dev/null 2>&1; } 2>&1; }
 
 long_lists() {
   local folder=$out/long-list

@@ -19,6 +19,9 @@ bin=build/release/bin
 out=$PWD/build/acceptance
 mkdir -p "$out"
 
+# Wall time of a command [s].
+seconds_of() { local TIMEFORMAT=%R; { time "$@" >/dev/null 2>&1; } 2>&1; }
+
 # Runs the lines of hard_cases.txt whose id begins with one of the letters (long ones not with --quick); a line is passed
 # when all its tests ran and passed. Figures: those of the tests, and hard_cases.listed, hard_cases.passed.
 hard_cases() { # letters

@@ -70,7 +70,10 @@ std::vector<Reader> readers_of_dem(const fs::path& scene) {
              });
        }},
       {"state", Shape::sealed, "state/state",
-       [](std::string_view, const fs::path& file) { check_file_round_trip(file, dem::read_state, dem::write_state); }},
+       [](std::string_view, const fs::path& file) {
+         check_file_round_trip(file, dem::read_state,
+                               [](const fs::path& to, const dem::State& state) { dem::write_state(to, state); });
+       }},
       {"checkpoint", Shape::sealed, "checkpoint/checkpoint",
        [](std::string_view, const fs::path& file) {
          check_file_round_trip(file, dem::read_checkpoint, dem::write_checkpoint);

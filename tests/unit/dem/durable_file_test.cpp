@@ -27,6 +27,26 @@ TEST_F(DurableFile, IsReplacedWhole) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 2);
 }
 
+TEST_F(DurableFile, SecondNameIsOfTheSameFileUntilOneIsWritten) {
+  put("f", "frame");
+  put("g", "old");
+  for (int again = 0; again < 2; ++again) {  // the second time both are one file already
+    link_or_copy(folder_ / "f", folder_ / "g");
+    EXPECT_EQ(content(folder_ / "g"), "frame");
+    EXPECT_EQ(fs::hard_link_count(folder_ / "f"), 2u);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator{}), 2);
+  }
+  write_whole(folder_ / "g", "other");
+  EXPECT_EQ(content(folder_ / "f"), "frame");
+  EXPECT_EQ(content(folder_ / "g"), "other");
+  sync_files_below(folder_);
+  EXPECT_THROW(sync_files_below(folder_ / "none"), Error);
+  EXPECT_THROW(link_or_copy(folder_ / "none", folder_ / "h"), Error);
+  fs::create_symlink(folder_ / "f", folder_ / "link");
+  link_or_copy(folder_ / "g", folder_ / "link");
+  EXPECT_EQ(content(folder_ / "f"), "frame") << "not through a link";
+}
+
 TEST_F(DurableFile, IsNotWrittenThroughALink) {
   put("victim", "untouched");
   fs::create_symlink(folder_ / "victim", folder_ / "f");
