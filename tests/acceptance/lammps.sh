@@ -56,7 +56,7 @@ lammps_page() {
   "$bin/grainlaw" calibrate --dataset examples/starters/dataset -o "$law" --quiet >/dev/null || (($? == 3))
   echo '{"initial": {"nu": 0.72}, "seeds": [11, 12], "segments": [{"mode": "D2", "extent": {"eps_dev": 0.1}}]}' >"$lammps_out/path.json"
   for engine in grainlaw lammps; do
-    "$bin/grainlaw" predict "$law/parameters.json" "$lammps_out/path.json" --dem --spec "$lammps_out/$engine.json" --store "$lammps_out/$engine" \
+    "$bin/grainlaw" predict "$law/parameters.json" "$lammps_out/path.json" --dem --model reduced --spec "$lammps_out/$engine.json" --store "$lammps_out/$engine" \
       -o "$law/predictions/d2-$engine" --quiet >/dev/null
   done
   "$bin/grainlaw" report "$law" --quiet >/dev/null
