@@ -10,12 +10,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
@@ -137,13 +136,7 @@ void write_as_named(const fs::path& file, std::string_view bytes) {
   write_durably(target, bytes);
 }
 
-void copy_durably(const fs::path& from, const fs::path& to) {
-  std::ifstream in(from, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad())
-    throw Error(fmt::format("{}: cannot be read: {}", from.string(), std::strerror(errno)));
-  write_durably(to, content);
-}
+void copy_durably(const fs::path& from, const fs::path& to) { write_durably(to, read_bytes(from)); }
 
 void remove_leftovers(const fs::path& folder) {
   std::vector<fs::path> temporaries;
