@@ -1,15 +1,22 @@
 #include "app/cli.hpp"
 
+#include <cxxabi.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <new>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <thread>
+#include <typeinfo>
 #include <vector>
 
 #include "app/commands/commands.hpp"
@@ -142,6 +149,34 @@ int fail(ExitCode code, const std::string& message) {
   return static_cast<int>(code);
 }
 
+/// Without needing any.
+int fail_without_memory() {
+  std::fputs("grainlaw: out of memory; use fewer particles or threads\n", stderr);
+  return static_cast<int>(ExitCode::failure);
+}
+
+std::atomic<bool> ran_out{false};
+
+[[noreturn]] void throw_without_memory() {
+  ran_out = true;
+  throw std::bad_alloc();
+}
+
+/// Where an exception cannot go on. Memory may run out where none may be thrown, as in the destructor of nlohmann's Json and in
+/// std::filesystem: the same message and exit code then; temporary files and locks that stay are removed by who comes next.
+[[noreturn]] void end_at_once() {
+  const std::type_info* const thrown = abi::__cxa_current_exception_type();
+  if (thrown ? *thrown == typeid(std::bad_alloc) : ran_out.load()) _exit(fail_without_memory());
+  __gnu_cxx::__verbose_terminate_handler();
+  std::abort();
+}
+
+/// Of the system: of a thread that it does not start the reason alone says little.
+std::string text_of(const std::system_error& error) {
+  if (error.code() != std::errc::resource_unavailable_try_again) return error.what();
+  return fmt::format("threads: the system starts no more ({}); give fewer with --threads", error.what());
+}
+
 std::string command_line(int argc, char** argv) {
   std::string text = "grainlaw";
   for (int i = 1; i < argc; ++i) text += fmt::format(" {}", one_line(argv[i]));
@@ -172,17 +207,16 @@ int perform(const Task& task, const Common& common, const std::string& command) 
   } catch (const Interrupted& error) {
     return fail(ExitCode::interrupted, error.what());
   } catch (const std::bad_alloc&) {
-    return fail(ExitCode::failure, "out of memory; use fewer particles or threads");
+    throw;
+  } catch (const std::system_error& error) {
+    return fail(ExitCode::failure, text_of(error));
   } catch (const std::exception& error) {
     if (stop.stop_requested()) return fail(ExitCode::interrupted, fmt::format("interrupted: {}", error.what()));
     return fail(ExitCode::failure, error.what());
   }
 }
 
-}  // namespace
-
-int run(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the shell's limit is an error of its write then, with a message
+int run_command(int argc, char** argv) {
   CLI::App app("grainlaw: from frictionless grains to an incremental constitutive law and back", "grainlaw");
   Common common;
   Task task;
@@ -212,10 +246,27 @@ int run(int argc, char** argv) {
     return say(text.str());
   } catch (const CLI::ParseError& error) {
     return fail(ExitCode::invalid_input, fmt::format("{}; see {} --help", error.what(), full_name(command)));
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     return fail(ExitCode::invalid_input, error.what());
   }
   return perform(task, common, command_line(argc, argv));
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  std::set_new_handler(throw_without_memory);
+  std::set_terminate(end_at_once);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the shell's limit is an error of its write then, with a message
+  try {
+    return run_command(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return fail_without_memory();
+  } catch (const std::exception& error) {
+    return fail(ExitCode::failure, error.what());
+  }
 }
 
 }  // namespace grainlaw::app

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "chain/fitted_paths.hpp"
 #include "chain/rehearsals.hpp"
@@ -16,6 +14,7 @@
 #include "fit/published/verdicts.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output.hpp"
+#include "model/files/reading.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -26,8 +25,8 @@ namespace fs = std::filesystem;
 
 /// Parameters of another spec must not stay beside this one's data, should the work be interrupted.
 void remove_results_of_others(const fs::path& output, const std::string& spec) {
-  std::ifstream file(output / "spec.resolved.json", std::ios::binary);
-  if (std::string{std::istreambuf_iterator<char>(file), {}} == spec) return;
+  const fs::path resolved = output / "spec.resolved.json";
+  if ((fs::exists(resolved) ? read_bytes(resolved) : "") == spec) return;
   for (const char* name : {"parameters.json", "calibration.json", "fitted_paths.json"}) fs::remove(output / name);
 }
 

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "dem/export/snapshot.hpp"
 #include "dem/export/vtkhdf.hpp"
 #include "dem/files/sphere_table.hpp"
@@ -13,6 +11,7 @@
 #include "model/files/dataset.hpp"
 #include "model/files/npz_writer.hpp"
 #include "model/files/output.hpp"
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {
@@ -28,11 +27,9 @@ struct StateSource {
 
 std::vector<fs::path> files_with(const fs::path& folder, const char* extension) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == extension && !entry.path().filename().string().starts_with('.'))
-      files.push_back(entry.path());
+  for (const fs::path& entry : entries_of(folder)) {
+    if (entry.extension() == extension && !entry.filename().string().starts_with('.')) files.push_back(entry);
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 

@@ -6,6 +6,7 @@
 
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
+#include "model/files/reading.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -44,11 +45,9 @@ std::vector<predict::RehearsalRuns> by_path(const std::vector<TestRecord>& runs,
 
 std::vector<fs::path> rehearsal_folders(const fs::path& folder) {
   std::vector<fs::path> folders;
-  std::error_code absent;
-  for (const auto& entry : fs::directory_iterator(folder / kRehearsalsFolder, absent)) {
-    if (fs::exists(entry.path() / "dataset.json")) folders.push_back(entry.path());
+  for (const fs::path& entry : entries_of(folder / kRehearsalsFolder)) {
+    if (fs::exists(entry / "dataset.json")) folders.push_back(entry);
   }
-  std::ranges::sort(folders);
   return folders;
 }
 

@@ -7,6 +7,7 @@
 #include "fit/calibration_file.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/one_line.hpp"
+#include "model/files/reading.hpp"
 #include "model/parameters_file.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -38,11 +39,9 @@ std::string calibrate_command(const fs::path& dir) {
 /// Folders below `dir`, by name.
 std::vector<fs::path> folders_of(const fs::path& dir) {
   std::vector<fs::path> folders;
-  std::error_code absent;
-  for (const auto& entry : fs::directory_iterator(dir, absent)) {
-    if (entry.is_directory()) folders.push_back(entry.path());
+  for (const fs::path& entry : entries_of(dir)) {
+    if (fs::is_directory(entry)) folders.push_back(entry);
   }
-  std::sort(folders.begin(), folders.end());
   return folders;
 }
 

@@ -1,12 +1,15 @@
 #include "app/terminal/interrupt.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstring>
 #include <thread>
+#include <utility>
 
 #include "app/exit_code.hpp"
 #include "model/vocabulary/error.hpp"
@@ -35,10 +38,17 @@ struct InterruptGuard::Watch {
   struct sigaction earlier_int {
   }, earlier_term{};
   std::jthread thread;
+
+  ~Watch() {
+    for (const int end : ends) {
+      if (end >= 0) close(end);
+    }
+  }
 };
 
 InterruptGuard::InterruptGuard() : watch_(new Watch) {
-  if (pipe2(watch_->ends, O_CLOEXEC) != 0) throw Error("signals: no pipe could be opened");
+  if (pipe2(watch_->ends, O_CLOEXEC) != 0)
+    throw Error(fmt::format("signals: no pipe can be opened: {}", std::strerror(errno)));
   signals_seen = 0;
   pipe_in = watch_->ends[1];
   // stop callbacks are no business of a signal handler: a thread requests the stop
@@ -60,9 +70,8 @@ InterruptGuard::~InterruptGuard() {
   sigaction(SIGINT, &watch_->earlier_int, nullptr);
   sigaction(SIGTERM, &watch_->earlier_term, nullptr);
   pipe_in = -1;
-  close(watch_->ends[1]);  // ends the thread's read, whatever happens to system calls
+  close(std::exchange(watch_->ends[1], -1));  // ends the thread's read, whatever happens to system calls
   watch_->thread.join();
-  close(watch_->ends[0]);
 }
 
 std::stop_token InterruptGuard::token() const { return watch_->source.get_token(); }

@@ -58,9 +58,9 @@ class alignas(64) Share {
 
 struct ThreadTeam::Crew {
   std::vector<std::thread> threads;
-  std::vector<Share> shares;                   // of the members; the caller's is the first
-  std::atomic<std::uint64_t> round{0};         // grows by one per loop; workers wait for it
-  std::atomic<std::size_t> unfinished{0};      // blocks of the current loop
+  std::vector<Share> shares;                               // of the members; the caller's is the first
+  std::atomic<std::uint64_t> round{0};                     // grows by one per loop; workers wait for it
+  std::atomic<std::size_t> unfinished{0};                  // blocks of the current loop
   const std::function<void(std::size_t)>* body = nullptr;  // to be read by who has taken a block
   std::mutex failure_mutex;
   std::exception_ptr failure;
@@ -124,6 +124,9 @@ ThreadTeam::ThreadTeam(int threads) {
   } catch (const std::system_error&) {
     crew_->dismiss();
     throw Error("threads: the system does not start as many as " + std::to_string(threads) + "; give fewer");
+  } catch (...) {  // no memory
+    crew_->dismiss();
+    throw;
   }
 }
 

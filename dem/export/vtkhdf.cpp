@@ -16,7 +16,7 @@ namespace {
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id_ < 0) throw Error("HDF5 failed; is there memory?");
+    if (id_ < 0) throw Error("HDF5 failed; is memory exhausted?");
   }
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -29,7 +29,7 @@ class Handle {
 };
 
 void need(herr_t status) {
-  if (status < 0) throw Error("HDF5 failed; is there memory?");
+  if (status < 0) throw Error("HDF5 failed; is memory exhausted?");
 }
 
 template <class Number>
@@ -43,7 +43,9 @@ template <class Number>
 void put(hid_t place, const char* name, const std::vector<Number>& values, hsize_t components = 1) {
   const hsize_t shape[2] = {values.size() / components, components};
   const Handle space(H5Screate_simple(components > 1 ? 2 : 1, shape, nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(place, name, type_of<Number>(), space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle how(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  need(H5Pset_obj_track_times(how, false));  // the same bytes every time
+  const Handle set(H5Dcreate2(place, name, type_of<Number>(), space, H5P_DEFAULT, how, H5P_DEFAULT), H5Dclose);
   need(H5Dwrite(set, type_of<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
 }
 
@@ -99,9 +101,9 @@ std::string vtkhdf_bytes(const Snapshot& snapshot) {
   put_snapshot(file, snapshot);
   need(H5Fflush(file, H5F_SCOPE_GLOBAL));
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  if (size < 0) throw Error("HDF5 failed; is there memory?");
+  if (size < 0) throw Error("HDF5 failed; is memory exhausted?");
   std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) throw Error("HDF5 failed; is there memory?");
+  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) throw Error("HDF5 failed; is memory exhausted?");
   return bytes;
 }
 
@@ -109,7 +111,13 @@ std::string vtkhdf_bytes(const Snapshot& snapshot) {
 
 void write_vtkhdf(const std::filesystem::path& file, const Snapshot& snapshot) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are said once, by us
-  write_durably(file, vtkhdf_bytes(snapshot));
+  std::string bytes;
+  try {
+    bytes = vtkhdf_bytes(snapshot);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  write_durably(file, bytes);
 }
 
 }  // namespace grainlaw::dem

@@ -4,10 +4,10 @@
 
 #include <bit>
 #include <cmath>
-#include <fstream>
 
 #include "model/files/digest.hpp"
 #include "model/files/output.hpp"
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
@@ -28,20 +28,6 @@ std::uint64_t get_unsigned(std::string_view bytes) {
     value |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
   }
   return value;
-}
-
-std::string read_bytes(const std::filesystem::path& file, std::string_view name) {
-  std::error_code failure;
-  if (!std::filesystem::is_regular_file(file, failure)) {
-    throw InvalidInput(fmt::format("{}: no such {}", file.string(), name));
-  }
-  std::ifstream in(file, std::ios::binary | std::ios::ate);
-  const std::streamoff length = in.tellg();
-  std::string bytes(length > 0 ? static_cast<std::size_t>(length) : 0, '\0');
-  in.seekg(0);
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw InvalidInput(fmt::format("{}: cannot be read", file.string()));
-  return bytes;
 }
 
 }  // namespace
@@ -87,7 +73,10 @@ void write_sealed(const std::filesystem::path& file, const SealedFormat& format,
 
 void read_sealed(const std::filesystem::path& file, const SealedFormat& format,
                  const std::function<void(const nlohmann::json& header, NumberReader& numbers)>& parse) {
-  const std::string bytes = read_bytes(file, format.name);
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(file, failure))
+    throw InvalidInput(fmt::format("{}: no such {}", file.string(), format.name));
+  const std::string bytes = read_bytes(file);
   const auto refusal = [&](const std::string& why) {
     return InvalidInput(fmt::format("{}: {}; make it anew or give another file", file.string(), why));
   };

@@ -4,6 +4,8 @@
 
 #include "model/files/one_line.hpp"
 
+#include "model/files/reading.hpp"
+
 namespace grainlaw::dem {
 namespace {
 
@@ -12,24 +14,25 @@ bool blank(char c) { return c == ' ' || c == '\t'; }
 }  // namespace
 
 TextFile::TextFile(std::filesystem::path file, std::string_view remedy)
-    : file_(std::move(file)), in_(file_, std::ios::binary) {
+    : file_(std::move(file)), in_(std::fopen(file_.c_str(), "rb"), std::fclose) {
+  if (!in_) fail_to_read(file_.string(), "read", remedy);
   std::error_code failure;
-  if (!in_ || std::filesystem::is_directory(file_, failure)) {
-    throw InvalidInput(fmt::format("{}: cannot be read; {}", file_.string(), remedy));
-  }
+  if (std::filesystem::is_directory(file_, failure))
+    throw InvalidInput(fmt::format("{}: cannot be read: is a folder; {}", file_.string(), remedy));
 }
 
 bool TextFile::next() {
   line_.clear();
-  auto& buffer = *in_.rdbuf();
-  int c = buffer.sbumpc();
-  if (c == std::char_traits<char>::eof()) return false;
+  int c = getc_unlocked(in_.get());
+  if (std::ferror(in_.get())) fail_to_read(file_.string(), "read");
+  if (c == EOF) return false;
   ++number_;
-  for (; c != std::char_traits<char>::eof() && c != '\n'; c = buffer.sbumpc()) {
+  for (; c != EOF && c != '\n'; c = getc_unlocked(in_.get())) {
     if (c == 0) throw refusal("", "holds a NUL byte; give plain text");
     if (line_.size() == kMaxTextLine) throw refusal("", "is longer than 1 MB; give one sphere per line");
     line_.push_back(static_cast<char>(c));
   }
+  if (std::ferror(in_.get())) fail_to_read(file_.string(), "read");
   if (!line_.empty() && line_.back() == '\r') line_.pop_back();
   return true;
 }

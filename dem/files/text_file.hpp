@@ -1,8 +1,9 @@
 #pragma once
 // Text that somebody else wrote, line by line: bounded, and whatever is wrong is said with file, line and column.
 
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,10 +17,11 @@ inline constexpr std::size_t kMaxTextLine = 1'000'000;  ///< longer lines are re
 
 class TextFile {
  public:
-  /// Throws InvalidInput when the file cannot be read; `remedy` ends the message: "give ...".
+  /// Throws InvalidInput when there is no such file; `remedy` ends the message: "give ...".
   TextFile(std::filesystem::path file, std::string_view remedy);
 
-  /// Goes to the next line, without its end; false behind the last one. Throws InvalidInput for NUL bytes, too long lines.
+  /// Goes to the next line, without its end; false behind the last one. Throws InvalidInput for NUL bytes, too long lines, Error
+  /// when the system fails to read it.
   bool next();
 
   const std::string& line() const { return line_; }  ///< the present one
@@ -32,7 +34,7 @@ class TextFile {
 
  private:
   std::filesystem::path file_;
-  std::ifstream in_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> in_;
   std::string line_;
   std::size_t number_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "dem/files/state_file.hpp"
+#include "model/files/reading.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -16,11 +17,10 @@ namespace fs = std::filesystem;
 /// Files of the folder that fit a name with '*', "a9" before "a10".
 std::vector<fs::path> fitting(const fs::path& pattern) {
   std::vector<fs::path> found;
-  std::error_code error;
   const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (::fnmatch(pattern.filename().c_str(), entry.path().filename().c_str(), FNM_PERIOD) == 0)
-      found.push_back(folder / entry.path().filename());
+  for (const fs::path& entry : entries_of(folder)) {
+    if (::fnmatch(pattern.filename().c_str(), entry.filename().c_str(), FNM_PERIOD) == 0)
+      found.push_back(folder / entry.filename());
   }
   std::sort(found.begin(), found.end(),
             [](const fs::path& a, const fs::path& b) { return ::strverscmp(a.c_str(), b.c_str()) < 0; });

@@ -8,11 +8,11 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <pugixml.hpp>
 #include <string>
 
 #include "dem/foreign/foreign_frame.hpp"
+#include "model/files/reading.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -111,8 +111,7 @@ class VtkXml : public ForeignReader {
   /// The XML, and apart from it what is appended, which may be no text.
   void load() {
     TextFile(file_, "give a VTK file in XML (.vtp, .vtu)");  // there, and no folder
-    std::ifstream in(file_, std::ios::binary);
-    content_.assign(std::istreambuf_iterator<char>(in), {});
+    content_ = read_bytes(file_);
     std::string_view xml = content_;
     std::string closed;
     if (const std::size_t at = content_.find("<AppendedData"); at != std::string::npos) {

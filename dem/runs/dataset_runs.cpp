@@ -23,7 +23,9 @@ std::set<std::string> series_listed(const fs::path& folder) {
   try {
     const Json index = read_json(folder / "dataset.json", JsonSource::own);
     for (const Json& test : index.at("tests")) names.insert(test.at("name"));
-  } catch (const std::exception&) {
+  } catch (const Json::exception&) {
+    names.clear();
+  } catch (const InvalidInput&) {
     names.clear();  // damaged: it is replaced, and what it listed is left alone
   }
   return names;
@@ -137,7 +139,7 @@ Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, co
   for (const PlannedTest& planned : tests) {
     DatasetTest test;
     test.run = run_of(planned);
-    const Json record = store.find(test.run).value();
+    const Json record = store.finished(test.run);
     test.record = {planned.name, planned.role, planned.path, packing_from_record(record), {}};
     test.cost = cost_from_record(record);
     for (const Json& warning : record.at("warnings")) test.warnings.push_back(warning);

@@ -127,7 +127,7 @@ double measured_rate(const PreparationOptions& like, int threads, const std::sto
       together.emplace_back([&] {
         try {
           rate = rate_of_one(state, like, engine, stop);
-        } catch (const Error&) {
+        } catch (const std::exception&) {
           rate = 0;  // another thread's rate serves, or none is known
         }
       });

@@ -74,10 +74,16 @@ class Schedule {
     if (claim == Claim::finished) phase_[next] = Phase::done;
     if (claim != Claim::mine) return true;
     const int threads = std::max(1, free_ / waiting);
+    try {
+      workers_.emplace_back([this, next, threads] { work(next, threads); });
+    } catch (...) {  // no thread, no memory: those that run need not go on
+      errors_[next] = std::current_exception();
+      all_.request_stop();
+      return false;
+    }
     free_ -= threads;
     ++running_;
     phase_[next] = Phase::running;
-    workers_.emplace_back([this, next, threads] { work(next, threads); });
     return true;
   }
 

@@ -45,7 +45,7 @@ bool PathProbes::take_up() {
     lines_ = progress.at("rows").get<std::vector<std::string>>();
     warnings_ = progress.at("warnings").get<std::vector<std::string>>();
     return true;
-  } catch (const Error&) {
+  } catch (const InvalidInput&) {
     return false;
   } catch (const Json::exception&) {
     return false;

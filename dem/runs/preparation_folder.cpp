@@ -59,7 +59,7 @@ bool PreparationFolder::take_up() {
     if (!progress.at("warnings").is_array()) return false;
     progress_ = std::move(progress);
     return true;
-  } catch (const Error&) {
+  } catch (const InvalidInput&) {
     return false;
   } catch (const Json::exception&) {
     return false;

@@ -96,11 +96,16 @@ std::optional<Json> RunStore::find(const std::string& key) const {
     }
     remove_scratch(run);
     return record;
-  } catch (const Error&) {
+  } catch (const InvalidInput&) {
     return std::nullopt;  // damaged: it is run again
   } catch (const Json::exception&) {
     return std::nullopt;
   }
+}
+
+Json RunStore::finished(const std::string& key) const {
+  if (auto record = find(key)) return std::move(*record);
+  throw Error(fmt::format("{}: is damaged or gone since; the same command makes it again", folder(key).string()));
 }
 
 std::optional<fs::path> RunStore::set_aside_damaged(const std::string& key) const {
@@ -115,7 +120,8 @@ std::optional<fs::path> RunStore::set_aside_damaged(const std::string& key) cons
 
 fs::path RunStore::begin(const std::string& key) const {
   std::error_code error;
-  fs::remove_all(folder(key), error);
+  fs::remove_all(folder(key), error);  // what stayed would count as the run's own
+  if (error) throw Error(fmt::format("{}: cannot be removed: {}", folder(key).string(), error.message()));
   return make_subfolder(root_, key);
 }
 

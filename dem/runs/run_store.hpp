@@ -44,8 +44,11 @@ class RunStore {
   std::unique_ptr<ProcessLock> try_lock(const std::string& key) const;
 
   /// run.json of a finished run that is whole and whose files are as they were written; nothing otherwise. Scratch files that a kill left
-  /// beside a finished run are removed.
+  /// beside a finished run are removed. Throws Error when the system fails to read what is there: that is no damage.
   std::optional<Json> find(const std::string& key) const;
+
+  /// The same of a run that was finished before. Throws Error when it no longer is.
+  Json finished(const std::string& key) const;
 
   /// Puts the folder of a finished run that find() does not accept aside as KEY.damaged, for whoever wants to look; returns its
   /// run.json as it was, nothing when there is no such folder.

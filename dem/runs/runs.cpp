@@ -204,7 +204,7 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
        {"warnings", folder.warnings()},
        {"cost", fields_to_json(RunCost{0, 0, earlier + stopwatch.seconds()})},
        {"provenance", lammps_provenance(provenance("preparation", options.engine.threads, stopwatch), place)}});
-  return store.find(key).value();
+  return store.finished(key);
 }
 
 Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolicy& policy, const RunControl& control) {
@@ -269,7 +269,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
                 {"warnings", warnings},
                 {"cost", fields_to_json(RunCost{done.steps, done.time_step, earlier + stopwatch.seconds()})},
                 {"provenance", lammps_provenance(provenance("element test", o.engine.threads, stopwatch), place)}});
-  return store.find(key).value();
+  return store.finished(key);
 }
 
 PackingInfo packing_from_record(const Json& record) {

@@ -81,7 +81,7 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
   make_runs(runs_of(tests), store, execution, counts);
   const auto lock = lock_results(output, execution);
   const std::string key = run_of(tests.front());
-  const Json record = store.find(key).value();
+  const Json record = store.finished(key);
   std::vector<std::string> files = publish(store, key, record, output);
   const Path path = prepared ? unloading_branch(test.preparation) : test.path;
   SimulationResult simulation;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <exception>
+#include <mutex>
 #include <thread>
 
 #include "model/parameters.hpp"
@@ -39,10 +41,17 @@ bool evaluate(const std::vector<ResidualBlock>& blocks, const Eigen::VectorXd& x
   std::fill(misfit, misfit + rows, std::nan(""));
   std::atomic<std::size_t> next = 0;
   std::atomic<bool> good = true;
+  std::mutex mutex;
+  std::exception_ptr failure;
   const auto work = [&] {
-    for (std::size_t b = next++; b < blocks.size(); b = next++) {
-      double* J = jacobian == nullptr ? nullptr : jacobian + first[b] * x.size();
-      if (!blocks[b].evaluate(x.data(), misfit + first[b], J)) good = false;
+    try {
+      for (std::size_t b = next++; b < blocks.size(); b = next++) {
+        double* J = jacobian == nullptr ? nullptr : jacobian + first[b] * x.size();
+        if (!blocks[b].evaluate(x.data(), misfit + first[b], J)) good = false;
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      failure = std::current_exception();
     }
   };
   const int extra = std::min<int>(threads, static_cast<int>(blocks.size())) - 1;
@@ -51,6 +60,7 @@ bool evaluate(const std::vector<ResidualBlock>& blocks, const Eigen::VectorXd& x
     for (int t = 0; t < extra; ++t) team.emplace_back(work);
     work();
   }
+  if (failure) std::rethrow_exception(failure);
   return good && finite(misfit, rows) && (jacobian == nullptr || finite(jacobian, rows * x.size()));
 }
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "model/files/number_text.hpp"
 #include "model/files/one_line.hpp"
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
@@ -32,10 +32,9 @@ std::string csv_number(double value) {
 CsvReader::CsvReader(const std::filesystem::path& file)
     : name_(one_line(file.string(), 200)), in_(std::fopen(file.c_str(), "rb"), std::fclose), buffer_(1 << 16) {
   std::error_code error;
-  if (!in_ || std::filesystem::is_directory(file, error)) {
-    throw InvalidInput(
-        fmt::format("{}: cannot be opened: {}; give a CSV file", name_, in_ ? "is a folder" : std::strerror(errno)));
-  }
+  if (!in_) fail_to_read(name_, "opened", "give a CSV file");
+  if (std::filesystem::is_directory(file, error))
+    throw InvalidInput(fmt::format("{}: cannot be opened: is a folder; give a CSV file", name_));
   if (!next_line()) throw InvalidInput(fmt::format("{}: is empty; the first line must name the columns", name_));
   if (std::string_view(line_).substr(0, 3) == "\xEF\xBB\xBF") {
     throw InvalidInput(fmt::format("{}: begins with a byte order mark; save it as UTF-8 without one", name_));
@@ -61,8 +60,7 @@ bool CsvReader::next_line() {
     if (begin_ == end_) {
       begin_ = 0;
       end_ = std::fread(buffer_.data(), 1, buffer_.size(), in_.get());
-      if (std::ferror(in_.get()))
-        throw InvalidInput(fmt::format("{}: cannot be read: {}", name_, std::strerror(errno)));
+      if (std::ferror(in_.get())) fail_to_read(name_, "read");
       if (end_ == 0) break;
     }
     const char* const from = buffer_.data() + begin_;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -14,6 +13,7 @@
 #include "model/files/npz.hpp"
 #include "model/files/number_text.hpp"
 #include "model/files/one_line.hpp"
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
@@ -157,7 +157,7 @@ std::string bytes_of(const std::filesystem::path& file, const std::string& name)
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
     throw InvalidInput(fmt::format("{}: is no regular file; give a table", name));
   const std::unique_ptr<std::FILE, decltype(&std::fclose)> in(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!in) throw InvalidInput(fmt::format("{}: cannot be opened: {}; give a table", name, std::strerror(errno)));
+  if (!in) fail_to_read(name, "opened", "give a table");
   std::string bytes;
   std::vector<char> buffer(1 << 16);
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) {
@@ -165,7 +165,7 @@ std::string bytes_of(const std::filesystem::path& file, const std::string& name)
     if (bytes.size() > kMaxForeignBytes)
       throw InvalidInput(fmt::format("{}: is larger than {} MB; thin the series", name, kMaxForeignBytes >> 20));
   }
-  if (std::ferror(in.get())) throw InvalidInput(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));
+  if (std::ferror(in.get())) fail_to_read(name, "read");
   return bytes;
 }
 

@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
@@ -205,9 +204,7 @@ Json read_json(const std::filesystem::path& file, JsonSource source) {
     throw InvalidInput(fmt::format("{}: is a folder; give a JSON file", name));
   }
   const std::unique_ptr<std::FILE, decltype(&std::fclose)> in(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!in)
-    throw InvalidInput(
-        fmt::format("{}: cannot be opened: {}; give the path of a JSON file", name, std::strerror(errno)));
+  if (!in) fail_to_read(name, "opened", "give the path of a JSON file");
   std::string text;
   std::vector<char> buffer(1 << 16);
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) {
@@ -217,7 +214,7 @@ Json read_json(const std::filesystem::path& file, JsonSource source) {
           fmt::format("{}: is larger than {} MB; no document of this kind is", name, kMaxJsonBytes >> 20));
     }
   }
-  if (std::ferror(in.get())) throw InvalidInput(fmt::format("{}: cannot be read: {}", name, std::strerror(errno)));
+  if (std::ferror(in.get())) fail_to_read(name, "read");
   return parse_json(text, name, source);
 }
 

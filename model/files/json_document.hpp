@@ -24,7 +24,7 @@ enum class JsonSource {
 /// `name` stands for the document in messages. Throws InvalidInput.
 Json parse_json(std::string_view text, const std::string& name, JsonSource source);
 
-/// Throws InvalidInput naming the file when it cannot be read or parsed.
+/// Throws InvalidInput naming the file when it is not there or cannot be parsed, Error when the system fails to read it.
 Json read_json(const std::filesystem::path& file, JsonSource source);
 
 /// Two spaces of indentation, arrays of plain values on one line. Throws Error naming the key of a non-finite number.

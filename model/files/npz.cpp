@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <new>
 #include <vector>
 
 #include "model/files/csv_table.hpp"
@@ -23,6 +24,11 @@ struct Member {
   std::string name, bytes;
 };
 
+/// What libzip says of memory is nothing that is wrong with the file.
+void throw_without_memory(const zip_error_t& error) {
+  if (error.zip_err == ZIP_ER_MEMORY) throw std::bad_alloc();
+}
+
 class Archive {
  public:
   Archive(std::string_view bytes, const std::string& name) : name_(name) {
@@ -34,6 +40,7 @@ class Archive {
     zip_error_fini(&error);
     if (!zip_) {
       if (source != nullptr) zip_source_free(source);
+      throw_without_memory(error);
       refuse(reason);
     }
   }
@@ -65,12 +72,18 @@ class Archive {
     if (!file.ends_with(".npy")) refuse(fmt::format("'{}' is no .npy", one_line(file, 60)));
     if (stat.size > most) refuse(fmt::format("its arrays are larger than {} MB", kMaxForeignBytes >> 20));
     const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> in(zip_fopen_index(zip_.get(), index, 0), zip_fclose);
-    if (!in) refuse(zip_strerror(zip_.get()));
+    if (!in) {
+      throw_without_memory(*zip_get_error(zip_.get()));
+      refuse(zip_strerror(zip_.get()));
+    }
     Member member{file.substr(0, file.size() - 4), std::string(stat.size + 1, '\0')};
     std::size_t length = 0;
     for (;;) {  // one byte more than it says: the check of its sum comes with the end
       const zip_int64_t n = zip_fread(in.get(), member.bytes.data() + length, member.bytes.size() - length);
-      if (n < 0) refuse(fmt::format("'{}' is damaged", one_line(file, 60)));
+      if (n < 0) {
+        throw_without_memory(*zip_file_get_error(in.get()));
+        refuse(fmt::format("'{}' is damaged", one_line(file, 60)));
+      }
       if (n == 0) break;
       length += static_cast<std::size_t>(n);
       if (length > stat.size) refuse(fmt::format("'{}' is longer than it says", one_line(file, 60)));

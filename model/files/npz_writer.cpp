@@ -37,7 +37,9 @@ std::string npy_bytes(const NamedArray& array) {
 }
 
 [[noreturn]] void fail(const std::string& file, zip_t* zip) {
-  const std::string reason = zip == nullptr ? "no memory" : zip_error_strerror(zip_get_error(zip));
+  const int code = zip == nullptr ? ZIP_ER_MEMORY : zip_error_code_zip(zip_get_error(zip));
+  const bool memory = code == ZIP_ER_MEMORY || code == ZIP_ER_OK;  // not all that fails for it says so
+  const std::string reason = memory ? "no memory" : zip_error_strerror(zip_get_error(zip));
   if (zip != nullptr) zip_discard(zip);
   throw Error(fmt::format("{}: cannot be made: {}", file, reason));
 }

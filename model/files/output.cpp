@@ -10,12 +10,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
@@ -59,14 +58,6 @@ void write_into(const fs::path& file, int descriptor, std::string_view bytes) {
   ::close(descriptor);
   errno = error;
   if (!written) fail_at(file, "written");
-}
-
-std::string content_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string content{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad())
-    throw Error(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
-  return content;
 }
 
 /// A file that disappears unless it is renamed.
@@ -172,9 +163,9 @@ void write_as_named(const fs::path& file, std::string_view bytes) {
   write_durably(target, bytes);
 }
 
-void copy_durably(const fs::path& from, const fs::path& to) { write_durably(to, content_of(from)); }
+void copy_durably(const fs::path& from, const fs::path& to) { write_durably(to, read_bytes(from)); }
 
-void copy_whole(const fs::path& from, const fs::path& to) { write_whole(to, content_of(from)); }
+void copy_whole(const fs::path& from, const fs::path& to) { write_whole(to, read_bytes(from)); }
 
 void remove_leftovers(const fs::path& folder) {
   std::vector<fs::path> temporaries;

@@ -19,6 +19,7 @@
 
 #include "model/files/digest.hpp"
 #include "model/files/number_text.hpp"
+#include "model/files/reading.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
@@ -126,14 +127,6 @@ bool is_alive(const Owner& owner, const fs::path& file) {
   return now.value_or(fs::file_time_type::clock::now()) - touched < kSilence;
 }
 
-std::vector<fs::path> entries_of(const fs::path& folder) {
-  std::vector<fs::path> entries;
-  std::error_code error;  // there is none
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    entries.push_back(it->path());
-  return entries;
-}
-
 /// Removes the files of dead owners in a lock; the living one.
 std::optional<Owner> living_owner(const fs::path& place) {
   if (fs::is_symlink(fs::symlink_status(place)))
@@ -156,7 +149,8 @@ std::string text_of(const Owner& owner) { return fmt::format("process {} on {}",
 
 }  // namespace
 
-ProcessLock::ProcessLock(fs::path file, std::chrono::milliseconds heartbeat) : file_(std::move(file)) {
+ProcessLock::ProcessLock(fs::path file, std::chrono::milliseconds heartbeat)
+    : file_(std::move(file)), folder_(file_.parent_path()) {
   heart_ = std::jthread([this, heartbeat](const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stopped_.wait_for(lock, stop, heartbeat, [&] { return stop.stop_requested(); })) {
@@ -172,7 +166,7 @@ ProcessLock::~ProcessLock() {
   heart_.request_stop();
   heart_.join();
   unlink(file_.c_str());
-  rmdir(file_.parent_path().c_str());  // unless another has it already
+  rmdir(folder_.c_str());  // unless another has it already
 }
 
 std::unique_ptr<ProcessLock> ProcessLock::try_lock(const fs::path& place, std::chrono::milliseconds heartbeat) {

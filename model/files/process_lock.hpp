@@ -39,7 +39,7 @@ class ProcessLock {
  private:
   ProcessLock(std::filesystem::path file, std::chrono::milliseconds heartbeat);
 
-  std::filesystem::path file_;
+  std::filesystem::path file_, folder_;
   std::stop_source lost_;
   std::mutex mutex_;
   std::condition_variable_any stopped_;

@@ -9,6 +9,7 @@
 #include "dem/runs/preparation_folder.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/series_csv.hpp"
+#include "tests/support/no_descriptors.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::dem {
@@ -101,6 +102,14 @@ TEST_F(Runs, AreExecutedOnceAndRepeatedWhenDamaged) {
   const std::string bytes = content(state);
   EXPECT_EQ(ensure_preparation(store, tiny(), {}, {}), record);
   EXPECT_EQ(fs::last_write_time(store.folder(key) / "run.json"), written);
+
+  {  // what the system fails to read is not damaged
+    const testing::NoDescriptors full;
+    EXPECT_THROW(store.find(key), Error);
+    EXPECT_THROW(ensure_preparation(store, tiny(), {}, {}), Error);
+  }
+  EXPECT_EQ(store.find(key), record);
+  EXPECT_FALSE(fs::exists(store.folder(key + ".damaged")));
 
   std::string damaged = bytes;
   damaged[damaged.size() / 2] ^= 1;
@@ -220,6 +229,12 @@ TEST_F(Runs, GoOnFromTheirCheckpoints) {
   };
 
   interrupt_twice();
+  {  // a checkpoint that the system fails to read is not thrown away
+    const testing::NoDescriptors full;
+    EXPECT_THROW(ensure_preparation(store, tiny(), policy, {}), Error);
+  }
+  EXPECT_TRUE(fs::exists(run / kCheckpoint) && fs::exists(run / kPreviousCheckpoint));
+  EXPECT_TRUE(log.empty());
   EXPECT_EQ(ensure_preparation(store, tiny(), policy, {}).at("warnings"), whole.find(key)->at("warnings"));
   EXPECT_EQ(results(run), expected);
   ASSERT_EQ(log.size(), 1u);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <new>
 
 namespace grainlaw::fit {
 namespace {
@@ -38,6 +39,18 @@ TEST(ResidualBlock, DifferentiatesRowByRow) {
   r = {};
   ASSERT_TRUE(evaluate(x.data(), r.data(), nullptr));
   EXPECT_EQ(r, (std::array<double, 2>{15, 9}));
+}
+
+// In whichever thread memory runs out.
+TEST(ResidualBlock, PassesOnWhatIsThrownInAnyThread) {
+  std::vector<ResidualBlock> blocks(64);
+  for (ResidualBlock& block : blocks) {
+    block.weight = Eigen::VectorXd::Ones(1);
+    block.evaluate = [](const double*, double*, double*) -> bool { throw std::bad_alloc(); };
+  }
+  double misfit[64] = {};
+  for (const int threads : {1, 4})
+    EXPECT_THROW(evaluate(blocks, Eigen::VectorXd::Zero(1), threads, misfit, nullptr), std::bad_alloc) << threads;
 }
 
 TEST(ResidualBlock, PassesOnThatTheModelIsUndefined) {
