@@ -77,8 +77,8 @@ counts() { # stage: what its log says
 }
 
 failures() { # stage: names of failed tests and short figures
-  sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .*\*\*\*(Failed|Timeout|Exception).*/\1/p; s/^([^ ]+ [^ ]+ [^ ]+) short$/\1/p' \
-    "$folder/$1.log" | sort -u
+  sed -nE -e 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .*\*\*\*(Failed|Timeout|Exception).*/\1/p' \
+    -e 's/^([^ ]+ [^ ]+ [^ ]+) short$/\1/p' -e 's/^valgrind: ([^ ]+), .* FAILED$/\1/p' "$folder/$1.log" | sort -u
 }
 
 # --- Saying what is going on -------------------------------------------------------------------------------------------------

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# tests/valgrind.sh [PROGRAM[:FILTER]...]: unit tests under valgrind's memcheck, without names those of model, fit and predict and those
-# of dem that read and write files, of build/assertions, which must be built: a sanitizer's build cannot run there.
+# tests/valgrind.sh [PROGRAM[:FILTER]...]: unit tests of build/assertions, which must be built, under valgrind's memcheck; without
+# names those of model, fit and predict and those of dem that read and write files.
 # One line each, "valgrind: PROGRAM ... ok|FAILED"; logs are left in build/valgrind. Exit code 1 if a test fails, memory is read
 # before it is written or out of bounds, or a block is lost.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 programs=("$@")
 if ((${#programs[@]} == 0)); then
-  programs=(unit_model unit_fit unit_predict
-            'unit_dem:StateFile.*:SphereTable.*:ForeignFrame*:ParticleSeries*:Snapshot.*:SpecFile.*:DurableFile.*:LammpsDeck.*:RunLists.*')
+  files='StateFile.*:SphereTable.*:ForeignFrame*:ParticleSeries*:Snapshot.*:SpecFile.*:DurableFile.*:LammpsDeck.*:RunLists.*'
+  programs=(unit_model unit_fit unit_predict "unit_dem:$files")
 fi
 mkdir -p build/valgrind
 
