@@ -66,13 +66,15 @@ counts() { # stage: what its log says
     /^valgrind: .* FAILED/ { reports++ }
     /^[^ ]+ [^ ]+ [^ ]+ ok$/ && !/^valgrind:/ { figures++ }
     /^[^ ]+ [^ ]+ [^ ]+ short$/ { short++ }
-    /^[a-z_-]+( +[0-9.-]+){6}$/ { readers++; findings += $7 }
+    NF == 6 && $2 $3 $4 $5 $6 ~ /^[0-9.-]+$/ { readers++; findings += $6 }
+    NF { gsub(/\|/, "/"); last = $0 }
     END {
       if (tests + failed) printf "%d tests passed, %d skipped, %d failed", tests, skipped, failed
       if (programs) printf "%d programs without an error", programs
       if (readers) printf "%d readers, %d with findings", readers, findings
       if (figures + short) printf "%d figures within bounds, %d short", figures, short
-      if (reports) printf "; %d reports", reports
+      if (reports) printf "%s%d reports of errors", (tests + failed + programs ? ", " : ""), reports
+      if (!(tests + failed + programs + readers + figures + short + reports)) printf "ended with: %s", substr(last, 1, 100)
     }' "$folder/$1.log"
 }
 
