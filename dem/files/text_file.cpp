@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "model/files/one_line.hpp"
-
 #include "model/files/reading.hpp"
 
 namespace grainlaw::dem {
