@@ -235,8 +235,12 @@ void inspect_folder(const fs::path& folder, const fs::path& output, const Execut
 Inspection inspected(const fs::path& file, const Company& company, const fs::path& output, const Execution& execution) {
   Inspection seen{file.string(), "", {}, {}};
   try {
-    const std::string start = fs::is_directory(file) ? "" : read_start(file);
-    if (fs::is_directory(file)) {
+    const bool folder = fs::is_directory(file);
+    if (!folder && fs::exists(file) && !fs::is_regular_file(file))
+      throw InvalidInput(
+          fmt::format("{}: is no regular file, and check reads more than once; give a file", file.string()));
+    const std::string start = folder ? "" : read_start(file);
+    if (folder) {
       inspect_folder(file, output, execution, seen);
     } else if (start.starts_with(dem::kStateMagic)) {
       seen.kind = "state";
@@ -261,7 +265,7 @@ Company company_of(const std::vector<fs::path>& files) {
   Company company;
   for (const fs::path& file : files) {
     try {
-      if (fs::is_directory(file) || file.extension() != ".json") continue;
+      if (!fs::is_regular_file(file) || file.extension() != ".json") continue;
       const Kind* kind = kind_of(read_json(file, JsonSource::user));
       if (kind != nullptr && kind->schema == Schema::spec && !company.spec) company.spec = dem::read_spec(file);
       if (kind == nullptr || kind->schema != Schema::parameters || !company.parameters.empty()) continue;

@@ -70,7 +70,7 @@ class Blocks : public ceres::CostFunction {
       const bool defined = block.evaluate(x.data(), values.data(), nullptr);
       const auto bad = std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
       if (!defined || bad != values.end()) {
-        return fmt::format("test {}, row {} of the fit", block.test, bad - values.begin());
+        return fmt::format("test {}, row {} of the fit", block.test, bad - values.begin() + 1);
       }
     }
     return "none";

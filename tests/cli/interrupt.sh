@@ -36,6 +36,9 @@ for signal in INT TERM; do
 done
 # waiting for what nobody writes or reads, too
 mkfifo nobody
+code=0  # not where a file is read more than once
+timeout 10 "$grainlaw" check nobody >stdout 2>log || code=$?
+[[ $code == 2 ]] && grep -q 'nobody: is no regular file' log stdout || fail "check of a FIFO: exit code $code, $(cat log stdout)"
 for command in "calibrate nobody -o none" "completion bash -o nobody"; do
   "$grainlaw" $command >stdout 2>log &
   pid=$!
