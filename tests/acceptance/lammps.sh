@@ -59,7 +59,7 @@ lammps_page() {
     "$bin/grainlaw" predict "$law/parameters.json" "$lammps_out/path.json" --dem --model reduced --spec "$lammps_out/$engine.json" --store "$lammps_out/$engine" \
       -o "$law/predictions/d2-$engine" --quiet >/dev/null
   done
-  "$bin/grainlaw" report "$law" --quiet >/dev/null
+  "$bin/grainlaw" report "$law" -o "$law/report.html" --quiet >/dev/null
   for engine in grainlaw lammps; do
     figure "lammps.page.figures_with_runs_by.$engine" "$(grep -o "DEM by $engine, 2 runs" "$law/report.html" | wc -l)" ">=2"
   done
