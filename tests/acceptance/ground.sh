@@ -9,13 +9,6 @@ set -euo pipefail
 # shellcheck source=tests/acceptance/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
 
-# Runs one of tests/survival or tests/cli; its log is kept.
-shell_test() { # folder/script VARIABLE=value...
-  local name=${1#*/}
-  env GRAINLAW_SOURCE_DIR="$PWD" "${@:2}" tests/in_fresh_directory.sh "$PWD/tests/$1.sh" "$PWD/$bin/grainlaw" \
-    2>"$out/$name.log" >"$out/$name.txt" || tail -3 "$out/$name.log" >&2
-}
-
 refusals() {
   shell_test cli/refusals
   figure refusals.slowest_seconds "$(value_of refusals.slowest_seconds "$out/refusals.txt")" "<=0.1"

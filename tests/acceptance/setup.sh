@@ -22,6 +22,13 @@ mkdir -p "$out"
 # Wall time of a command [s].
 seconds_of() { local TIMEFORMAT=%R; { time "$@" >/dev/null 2>&1; } 2>&1; }
 
+# Runs one of tests/survival or tests/cli; its log is kept.
+shell_test() { # folder/script VARIABLE=value...
+  local name=${1#*/}
+  env GRAINLAW_SOURCE_DIR="$PWD" GRAINLAW_BUILD_DIR="$PWD/build/release" "${@:2}" tests/in_fresh_directory.sh "$PWD/tests/$1.sh" "$PWD/$bin/grainlaw" \
+    2>"$out/$name.log" >"$out/$name.txt" || tail -3 "$out/$name.log" >&2
+}
+
 # Runs the lines of hard_cases.txt whose id begins with one of the letters (long ones not with --quick); a line is passed
 # when all its tests ran and passed. Figures: those of the tests, and hard_cases.listed, hard_cases.passed.
 hard_cases() { # letters

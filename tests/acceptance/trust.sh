@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# tests/acceptance/trust.sh [--quick]: what a stranger may rely on, one line each:
+#   NAME VALUE BOUND ok|short          exit 0 only if none is short
+# What was lost or overwritten once; calls of the system that fail and kills all along the chain; digits over threads and builds;
+# stress against the energy; the suites as tests/full.sh left them. --quick: few faults and kills, no mutants.
+set -euo pipefail
+
+# shellcheck source=tests/acceptance/setup.sh
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
+points=10000 kills=1000
+[[ $quick == no ]] || points=200 kills=20
+
+# Each find of a stranger has a test with its message.
+finds() {
+  local name
+  for name in nothing_lost refusals interrupt lies hostile_files; do
+    figure "finds.$name" "$(ctest --test-dir build/release -R "^cli.$name\$" >"$out/$name.ctest" 2>&1 && echo 0 || echo 1)" "<=0"
+  done
+}
+
+faults() {
+  local kind
+  shell_test survival/every_fault POINTS=$points
+  for kind in alloc write fsync rename open read folder thread; do
+    figure "faults.$kind" "$(value_of "every_fault.$kind" "$out/every_fault.txt")" stated
+  done
+  figure faults.all "$(value_of every_fault.all "$out/every_fault.txt")" ">=$((points * 3 / 4))"
+  figure faults.unsound "$(awk '$1 == "every_fault.all" { a = $2 } $1 == "every_fault.all_sound" { b = $2 } END { print (a == "" ? "missing" : a - b) }' \
+    "$out/every_fault.txt")" "<=0"
+  shell_test survival/chain_kills KILLS=$kills
+  figure kills.all "$(awk '$1 == "chain_kills.kills" { print $2 }' "$out/chain_kills.txt")" ">=$kills"
+  figure kills.unsound "$(awk '$1 == "chain_kills.kills" { print $2 - $4; n = 1 } END { if (!n) print "missing" }' "$out/chain_kills.txt")" "<=0"
+}
+
+# One calibration from packings to parameters by so many threads, and by other builds where there are any: values that differ.
+digits() {
+  local folder=$out/digits threads build
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  echo '{"particles": 300, "seeds": [1, 2], "strain_rate": 2000, "rows": 30, "nu_end": 0.67, "densities": [0.70, 0.75, 0.80],
+    "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration", "strain": 0.2}]}' >"$folder/spec.json"
+  by() { # name program threads
+    "$2" calibrate "$folder/spec.json" -o "$folder/$1" --threads "$3" --quiet >/dev/null 2>&1 || (($? == 3)) || true
+    jq -S 'del(.provenance)' "$folder/$1/parameters.json" >"$folder/$1.json" || echo missing >"$folder/$1.json"
+  }
+  differing() { # name
+    cmp -s "$folder/threads-1.json" "$folder/$1.json" && echo 0 || echo 1
+  }
+  for threads in 1 2 3 7 16 64; do
+    by "threads-$threads" "$bin/grainlaw" $threads
+    figure "digits.threads_$threads.differ" "$(differing "threads-$threads")" "<=0"
+  done
+  for build in clang assertions asan-ubsan; do
+    [[ -x build/$build/bin/grainlaw ]] || continue
+    by $build "build/$build/bin/grainlaw" 2
+    figure "digits.$build.series_that_differ" "$(for file in "$folder"/threads-1/dataset/*.csv; do cmp -s "$file" "$folder/$build/dataset/$(basename "$file")" || echo x; done | wc -l)" stated
+    figure "digits.$build.largest_difference_over_error" "$(jq -s '[.[0].parameters as $a | .[1].parameters as $b | $a | keys[] |
+      select($a[.].standard_error != null and $a[.].standard_error > 0) | ($a[.].value - $b[.].value | fabs) / $a[.].standard_error] | max' \
+      "$folder/threads-1.json" "$folder/$build.json")" stated
+  done
+}
+
+suites() {
+  local stage
+  for stage in release clang assertions asan-ubsan tsan valgrind fuzz; do
+    figure "suites.$stage" "$([[ -s build/full/$stage.result ]] && awk 'NR == 1 { printf "%s_in_%d_min", $2, $3 / 60 }' "build/full/$stage.result" || echo not_run)" stated
+  done
+}
+
+mutants() {
+  tests/mutants/run.sh >"$out/all_mutants.txt" 2>"$out/all_mutants.log" || true
+  figure mutants.caught_percent "$(awk '$1 == "mutants.caught" && $4 > 0 { print 100 * $2 / $4; n = 1 } END { if (!n) print "missing" }' "$out/all_mutants.txt")" ">=95"
+}
+
+finds
+faults
+digits
+figures_of_tests $bin/verification_dem '*.D7*' D7.random
+suites
+[[ $quick == yes ]] || mutants
+finish_figures
