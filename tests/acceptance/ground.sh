@@ -12,7 +12,7 @@ set -euo pipefail
 # Runs one of tests/survival or tests/cli; its log is kept.
 shell_test() { # folder/script VARIABLE=value...
   local name=${1#*/}
-  env GRAINLAW_SOURCE_DIR="$PWD" "${@:2}" tests/in_fresh_directory.sh "$PWD/tests/$1.sh" "$PWD/$bin/grainlaw" \
+  env GRAINLAW_SOURCE_DIR="$PWD" GRAINLAW_BUILD_DIR="$PWD/${bin%/bin}" "${@:2}" tests/in_fresh_directory.sh "$PWD/tests/$1.sh" "$PWD/$bin/grainlaw" \
     2>"$out/$name.log" >"$out/$name.txt" || tail -3 "$out/$name.log" >&2
 }
 
@@ -30,6 +30,14 @@ mishaps() {
   sound=$(value_of faults.sound "$out/faults.txt")
   figure faults.injected "$injected" ">=500"
   figure faults.corrupt "$(awk -v i="$injected" -v s="$sound" 'BEGIN { print i == "missing" ? i : i - s }')" "<=0"
+  shell_test survival/every_fault POINTS=10500
+  local points
+  points=$(value_of every_fault.all "$out/every_fault.txt")
+  sound=$(value_of every_fault.all_sound "$out/every_fault.txt")
+  figure every_fault.all "$points" ">=10000"
+  figure every_fault.unsound "$(awk -v i="$points" -v s="$sound" 'BEGIN { print i == "missing" ? i : i - s }')" "<=0"
+  shell_test survival/chain_kills KILLS=1000
+  figure chain_kills.sound "$(value_of chain_kills.sound "$out/chain_kills.txt")" ">=1000"
   shell_test survival/full_disk
   figure disks.full "$(value_of disks.full "$out/full_disk.txt")" ">=3"
   shell_test survival/signals SIGNALS=24 PAPER_SIZE=yes
