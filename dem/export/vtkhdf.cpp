@@ -161,7 +161,8 @@ class Maker {
       all.append(part, 0, static_cast<std::size_t>(n));
     }
     const int status = end();
-    if (!WIFEXITED(status)) fail(ENOMEM);
+    constexpr int kEndedByHdf5 = 255;
+    if (!WIFEXITED(status) || WEXITSTATUS(status) == kEndedByHdf5) fail(ENOMEM);
     if (WEXITSTATUS(status) != 0) fail(WEXITSTATUS(status));
     return all;
   }
