@@ -1,7 +1,8 @@
 #include "model/files/digest.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
+#define OPENSSL_SUPPRESS_DEPRECATED  // of SHA256_...; EVP takes memory, and reads from address 0 where there is none
+#include <openssl/sha.h>
 
 #include <array>
 #include <cstdio>
@@ -15,22 +16,16 @@ namespace {
 
 class Sha256 {
  public:
-  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    need(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
-  }
-  void add(std::string_view bytes) { need(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1); }
+  Sha256() { SHA256_Init(&context_); }
+  void add(std::string_view bytes) { SHA256_Update(&context_, bytes.data(), bytes.size()); }
   std::string bytes() {
-    std::string digest(32, '\0');
-    need(EVP_DigestFinal_ex(context_.get(), reinterpret_cast<unsigned char*>(digest.data()), nullptr) == 1);
+    std::string digest(SHA256_DIGEST_LENGTH, '\0');
+    SHA256_Final(reinterpret_cast<unsigned char*>(digest.data()), &context_);
     return digest;
   }
 
  private:
-  static void need(bool success) {
-    if (!success) throw Error("SHA-256: OpenSSL has no memory, or is installed without it");
-  }
-
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+  SHA256_CTX context_{};
 };
 
 std::string hex(const std::string& bytes) {

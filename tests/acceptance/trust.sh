@@ -28,8 +28,8 @@ faults() {
   figure faults.unsound "$(awk '$1 == "every_fault.all" { a = $2 } $1 == "every_fault.all_sound" { b = $2 } END { print (a == "" ? "missing" : a - b) }' \
     "$out/every_fault.txt")" "<=0"
   shell_test survival/chain_kills KILLS=$kills
-  figure kills.all "$(awk '$1 == "chain_kills.kills" { print $2 }' "$out/chain_kills.txt")" ">=$kills"
-  figure kills.unsound "$(awk '$1 == "chain_kills.kills" { print $2 - $4; n = 1 } END { if (!n) print "missing" }' "$out/chain_kills.txt")" "<=0"
+  figure kills.all "$(value_of chain_kills.kills "$out/chain_kills.txt")" ">=$kills"
+  figure kills.sound "$(value_of chain_kills.sound "$out/chain_kills.txt")" ">=$kills"
 }
 
 # One calibration from packings to parameters by so many threads, and by other builds where there are any: values that differ.

@@ -34,5 +34,5 @@ while ((killed < kills)); do
   fi
 done
 for step in "${steps[@]}"; do echo "chain_kills.$step ${struck[$step]:-0}"; done
-printf 'chain_kills.kills %s sound %s\n' "$killed" "$sound"
+printf '%s %s\n' chain_kills.kills "$killed" chain_kills.sound "$sound"
 found_nothing

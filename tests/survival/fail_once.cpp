@@ -3,8 +3,8 @@
 //   FAULT_AT     N; 0: none fails, they are only counted
 //   FAULT_MODE   once (default), or on: N and all later ones; a write to standard error is spared then, as full disks do
 //   FAULT_ERRNO  what errno says, a number
-//   FAULT_LOG    file for "struck KIND N CALL" when it happens and "count KIND CALLS" at the end
-//   FAULT_PLACES 1: also "place KIND N CALL WHERE" for the first call of each place, told apart by WHERE: a few of its callers
+//   FAULT_LOG    file for "struck KIND N 0 CALL" when it happens and "count KIND CALLS" at the end
+//   FAULT_PLACES 1: also "place KIND N WHERE CALL" for the first call of each place, told apart by WHERE: a few of its callers
 //   FAULT_TRACE  1: also the stack of the struck call
 //   FAULT_SERVE  1: main() is run by a child for each line "FOLDER KIND N MODE ERRNO" of standard input, in FOLDER, with standard output
 //                in FOLDER.said and standard error in FOLDER.log; its exit code goes to standard output. So libraries are loaded once.
@@ -54,7 +54,7 @@ int reason = 0, log_file = -1;
 /// One line of FAULT_LOG.
 void say(const char* what, Kind kind, unsigned long n, const char* call, std::size_t place = 0) {
   std::array<char, 120> line{};
-  const int length = std::snprintf(line.data(), line.size(), "%s %s %lu %s %zx\n", what, kNames[kind], n, call, place);
+  const int length = std::snprintf(line.data(), line.size(), "%s %s %lu %zx %s\n", what, kNames[kind], n, place, call);
   if (log_file >= 0) static_cast<void>(!write(log_file, line.data(), static_cast<std::size_t>(length)));
 }
 
