@@ -1,8 +1,8 @@
-# SIGKILL at random moments of the whole chain, KILLS times (default 12): nothing half under a final name, and the same command
+# SIGKILL at random moments of the whole chain, KILLS times (default 4): nothing half under a final name, and the same command
 # then ends with the same digits and leaves nothing over. Each moment of the chain is as likely as another; one in three who go on
 # is killed, too.
 . "$GRAINLAW_SOURCE_DIR/tests/survival/chain_scene.bash"
-kills=${KILLS:-12}
+kills=${KILLS:-4}
 RANDOM=${SEED:-7}
 
 killed=0 sound=0 starts=0

@@ -1,13 +1,13 @@
 # Each allocation, write, fsync, rename, open, read, change of a folder and start of a thread of the whole chain fails, as in
 # SQLite's tests: one call in turn, by a library in between (fail_once.cpp). After each: a documented exit code and one message
 # that says what failed, nothing half under a final name; then the same command ends with the same digits.
-# POINTS of them (default 40), spread evenly over kinds, steps and calls; where there are enough, one at each place that calls,
+# POINTS of them (default 16), spread evenly over kinds, steps and calls; where there are enough, one at each place that calls,
 # told apart by its callers; not memory under HDF5 1.10, which then writes where it may not. At one point in six all later
 # calls fail, too. STEPS and KINDS: only these.
 . "$GRAINLAW_SOURCE_DIR/tests/survival/chain_scene.bash"
 library=$GRAINLAW_BUILD_DIR/tests/libfail_once.so
 [[ -e $library ]] || { echo "no $library in this build: skipped" >&2; exit 77; }
-points=${POINTS:-40}
+points=${POINTS:-16}
 read -ra steps <<<"${STEPS:-${steps[*]}}"
 kinds=${KINDS:-alloc write fsync rename open read folder thread}
 declare -A reasons=([alloc]=12 [write]="28 5" [fsync]="5 28" [rename]="5 28" [open]="24 28" [read]=5 [folder]="28 5" [thread]=11)
