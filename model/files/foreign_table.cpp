@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <limits>
-#include <memory>
 
 #include "model/files/csv_table.hpp"
 #include "model/files/npy.hpp"
@@ -156,17 +153,7 @@ std::string bytes_of(const std::filesystem::path& file, const std::string& name)
   std::error_code error;
   if (std::filesystem::exists(file, error) && !std::filesystem::is_regular_file(file, error))
     throw InvalidInput(fmt::format("{}: is no regular file; give a table", name));
-  const std::unique_ptr<std::FILE, decltype(&std::fclose)> in(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!in) fail_to_read(name, "opened", "give a table");
-  std::string bytes;
-  std::vector<char> buffer(1 << 16);
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) {
-    bytes.append(buffer.data(), n);
-    if (bytes.size() > kMaxForeignBytes)
-      throw InvalidInput(fmt::format("{}: is larger than {} MB; thin the series", name, kMaxForeignBytes >> 20));
-  }
-  if (std::ferror(in.get())) fail_to_read(name, "read");
-  return bytes;
+  return read_bytes(file, "give a table", kMaxForeignBytes, "thin the series");
 }
 
 }  // namespace

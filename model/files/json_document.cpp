@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include "model/files/one_line.hpp"
@@ -203,21 +201,8 @@ Json read_json(const std::filesystem::path& file, JsonSource source) {
   if (std::filesystem::is_directory(file, error)) {
     throw InvalidInput(fmt::format("{}: is a folder; give a JSON file", name));
   }
-  const std::unique_ptr<std::FILE, decltype(&std::fclose)> in(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!in) fail_to_read(name, "opened", "give the path of a JSON file");
-  const auto check_size = [&](std::size_t size) {
-    if (size > kMaxJsonBytes)
-      throw InvalidInput(
-          fmt::format("{}: is larger than {} MB; no document of this kind is", name, kMaxJsonBytes >> 20));
-  };
-  if (std::filesystem::is_regular_file(file, error)) check_size(std::filesystem::file_size(file));
-  std::string text;
-  std::vector<char> buffer(1 << 16);
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) {
-    text.append(buffer.data(), n);
-    check_size(text.size());
-  }
-  if (std::ferror(in.get())) fail_to_read(name, "read");
+  const std::string text =
+      read_bytes(file, "give the path of a JSON file", kMaxJsonBytes, "no document of this kind is");
   return parse_json(text, name, source);
 }
 

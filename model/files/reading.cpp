@@ -31,16 +31,25 @@ void fail_to_read(const std::string& name, const char* what, std::string_view re
   throw Error(text);
 }
 
-std::string read_bytes(const std::filesystem::path& file) {
+std::string read_bytes(const std::filesystem::path& file, std::string_view remedy, std::size_t most,
+                       std::string_view too_large) {
   const std::string name = one_line(file.string(), 200);
   const std::unique_ptr<std::FILE, decltype(&std::fclose)> in(std::fopen(file.c_str(), "rb"), std::fclose);
-  if (!in) fail_to_read(name, "opened");
+  if (!in) fail_to_read(name, "opened", remedy);
+  const auto check_size = [&](std::size_t size) {
+    if (size > most) throw InvalidInput(fmt::format("{}: is larger than {} MB; {}", name, most >> 20, too_large));
+  };
   struct stat status {};
   std::string bytes;
-  if (fstat(fileno(in.get()), &status) == 0 && S_ISREG(status.st_mode))
+  if (fstat(fileno(in.get()), &status) == 0 && S_ISREG(status.st_mode)) {
+    check_size(static_cast<std::size_t>(status.st_size));
     bytes.reserve(static_cast<std::size_t>(status.st_size));
+  }
   std::string buffer(1 << 16, '\0');
-  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) bytes.append(buffer, 0, n);
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), in.get())) {
+    bytes.append(buffer, 0, n);
+    check_size(bytes.size());
+  }
   if (std::ferror(in.get())) fail_to_read(name, "read");
   return bytes;
 }

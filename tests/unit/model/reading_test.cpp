@@ -32,6 +32,16 @@ TEST_F(Reading, GivesAllBytes) {
   EXPECT_EQ(read_bytes(put("empty", "")), "");
 }
 
+TEST_F(Reading, RefusesMoreThanItsBound) {
+  const std::filesystem::path file = put("f", std::string(200000, 'x'));
+  EXPECT_EQ(read_bytes(file, "", 200000, "thin it").size(), 200000u);
+  EXPECT_EQ(refusal([&] { read_bytes(file, "", 199999, "thin it"); }),
+            file.string() + ": is larger than 0 MB; thin it");
+  EXPECT_NE(refusal([] { read_bytes("/dev/zero", "", 1 << 20, "thin it"); }).find("is larger than 1 MB"),
+            std::string::npos)
+      << "of no size that is known before";
+}
+
 // Whoever is refused gives another file, or calls it damaged; neither helps against too many open files.
 TEST_F(Reading, TellsAFileThatIsNotThereFromASystemThatFails) {
   const std::filesystem::path none = folder_ / "none", there = put("there.json", "{}");
