@@ -62,8 +62,8 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
   std::vector<std::string> names;
   for (const auto& file : record.at("files").items()) {
     const fs::path from = store.folder(key) / file.key(), to = folder / file.key();
-    if (to.extension() == ".state")
-      link_or_copy(from, to);  // hundreds of frames, which nobody edits
+    if (file.key().starts_with("frame-"))
+      link_or_copy(from, to);  // there may be hundreds, and nobody edits them
     else
       copy_whole(from, to);
     names.push_back(file.key());
