@@ -17,7 +17,7 @@ check() { # PROGRAM[:FILTER]
   [[ $1 == *:* ]] && filter=${1#*:}
   log=build/valgrind/$program.log
   valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite \
-    --num-callers=20 --child-silent-after-fork=yes --suppressions=tests/valgrind.supp \
+    --num-callers=20 --child-silent-after-fork=yes \
     "build/assertions/bin/$program" --gtest_filter="$filter" >"$log" 2>&1 || verdict=FAILED
   count() { grep -c "$@" "$log" || true; }
   printf 'valgrind: %s, %s tests passed, %s skipped, %s failed, %s errors, %d s: %s\n' "$program" \

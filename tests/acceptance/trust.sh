@@ -40,7 +40,7 @@ digits() {
   echo '{"particles": 300, "seeds": [1, 2], "strain_rate": 2000, "rows": 30, "nu_end": 0.67, "densities": [0.70, 0.75, 0.80],
     "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration", "strain": 0.2}]}' >"$folder/spec.json"
   by() { # name program threads
-    "$2" calibrate "$folder/spec.json" -o "$folder/$1" --threads "$3" --quiet >/dev/null 2>&1 || (($? == 3)) || true
+    "$2" calibrate "$folder/spec.json" -o "$folder/$1" --threads "$3" --quiet >/dev/null 2>&1 || true  # what it lacks is missing below
     jq -S 'del(.provenance)' "$folder/$1/parameters.json" >"$folder/$1.json" || echo missing >"$folder/$1.json"
   }
   differing() { # name
