@@ -40,6 +40,8 @@ bool PathFrames::take_up() {
   }
 }
 
+void PathFrames::write_places() const { write_whole(folder_ / kFramesFile, table_text(places_)); }
+
 StepObserver PathFrames::at_start() {
   return [this](Stepper& stepper, int segment, double e) {
     places_.clear();
@@ -62,7 +64,6 @@ void PathFrames::keep(Stepper& stepper, int segment, double e) {
   const FramePlace place{static_cast<int>(places_.size()), state.time, segment, e, L[0], L[1], L[2]};
   write_state(folder_ / frame_file(place.frame), state, write_whole);
   places_.push_back(place);
-  write_whole(folder_ / kFramesFile, table_text(places_));
 }
 
 }  // namespace grainlaw::dem

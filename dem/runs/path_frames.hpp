@@ -1,7 +1,8 @@
 #pragma once
 // States on the way of an element test, at equal steps of the path: frame-0000.state at its start, then, in each segment, at
-// the first step that reaches e = length k/N. frames.csv says where each is. The run is the same with and without. They are
+// the first step that reaches e = length k/N. frames.csv says where each is. The run is the same with and without. States are
 // written whole but synced only when the run ends; one that the machine's death has damaged makes an interrupted run start anew.
+// frames.csv is written with each checkpoint and at the end: what was kept after a checkpoint is kept again, with the same bits.
 
 #include <filesystem>
 #include <string>
@@ -40,8 +41,11 @@ class PathFrames {
   /// N = `count` frames in each segment; `segments` must outlive them. `digest` is written into the states.
   PathFrames(std::filesystem::path folder, int count, const std::vector<StraightSegment>& segments, std::string digest);
 
-  /// Takes up what an earlier session left; false when that is damaged.
+  /// Takes up what an earlier session left with its last checkpoint; false when that is damaged.
   bool take_up();
+
+  /// frames.csv.
+  void write_places() const;
 
   /// For the start of the run, and for its steps; must not outlive the frames.
   StepObserver at_start();

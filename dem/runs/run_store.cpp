@@ -127,7 +127,7 @@ fs::path RunStore::begin(const std::string& key) const {
 
 fs::path RunStore::reopen(const std::string& key) const { return make_subfolder(root_, key); }
 
-void RunStore::finish(const std::string& key, const Json& request, const OrderedJson& record) const {
+Json RunStore::finish(const std::string& key, const Json& request, const OrderedJson& record) const {
   const fs::path run = folder(key);
   OrderedJson document{{"format", "grainlaw run"}, {"format_version", 2}, {"key", key}};
   for (const auto& item : record.items()) document[item.key()] = item.value();
@@ -139,9 +139,11 @@ void RunStore::finish(const std::string& key, const Json& request, const Ordered
     if (!is_scratch(name)) sums[name] = sha256_of_file(entry.path());
   }
   for (const auto& [name, sum] : sums) files[name] = sum;
-  document["sha256"] = digest_of(Json::parse(json_text(document)));  // numbers as they are read back
+  Json as_read = Json::parse(json_text(document));
+  document["sha256"] = as_read["sha256"] = digest_of(as_read);
   write_json(run / "run.json", document);
   remove_scratch(run);
+  return as_read;
 }
 
 }  // namespace grainlaw::dem

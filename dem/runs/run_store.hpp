@@ -61,8 +61,8 @@ class RunStore {
   std::filesystem::path reopen(const std::string& key) const;
 
   /// Writes run.json: {format, key, request, `record`'s keys, files: {name: SHA-256}, sha256 of all these}, then removes the scratch
-  /// files.
-  void finish(const std::string& key, const Json& request, const OrderedJson& record) const;
+  /// files. Returns it as find() would.
+  Json finish(const std::string& key, const Json& request, const OrderedJson& record) const;
 
  private:
   std::filesystem::path root_;

@@ -196,7 +196,7 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
   } else {
     prepare(options, folder.sink(), control, checkpoints.checkpointing());
   }
-  store.finish(
+  return store.finish(
       key, request,
       {{"kind", "preparation"},
        {"packing", with_contacts(folder.packing(options.packing), options.choice)},
@@ -204,7 +204,6 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
        {"warnings", folder.warnings()},
        {"cost", fields_to_json(RunCost{0, 0, earlier + stopwatch.seconds()})},
        {"provenance", lammps_provenance(provenance("preparation", options.engine.threads, stopwatch), place)}});
-  return store.finished(key);
 }
 
 Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolicy& policy, const RunControl& control) {
@@ -244,14 +243,20 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
     to_frames(stepper, segment, e);
   };
   const StepObserver& on_step = probes && frames ? to_both : frames ? to_frames : to_probes;
+  Checkpointing checkpointing = checkpoints.checkpointing();
+  if (frames) {
+    checkpointing.save = [&frames, save = checkpointing.save](const Checkpoint& reached) {
+      frames->write_places();
+      save(reached);
+    };
+  }
   std::optional<LammpsPlace> place;
   if (o.choice.is_lammps()) place = lammps_place(folder, policy);
   const ElementTest done =
-      place ? run_by_lammps(*place, store, test, options, std::move(checkpoint), control, checkpoints.checkpointing())
-      : checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step,
-                                           checkpoints.checkpointing())
+      place        ? run_by_lammps(*place, store, test, options, std::move(checkpoint), control, checkpointing)
+      : checkpoint ? continue_element_test(std::move(*checkpoint), segments, options, control, on_step, checkpointing)
                    : run_element_test(start_state(store, test, control), segments, options, control, on_step,
-                                      checkpoints.checkpointing(), frames ? frames->at_start() : StepObserver{});
+                                      checkpointing, frames ? frames->at_start() : StepObserver{});
   write_series(folder / "series.csv", done.rows);
   std::vector<std::string> warnings = done.warnings;
   if (probes) {
@@ -261,15 +266,18 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   State end = done.end;
   end.digest = key;
   write_state(folder / "end.state", end);
-  if (frames) sync_files_below(folder);
+  if (frames) {
+    frames->write_places();
+    sync_files_below(folder);
+  }
   const auto width = test.given ? std::nullopt : std::optional(o.packing.size_width);
-  store.finish(key, request,
-               {{"kind", "test"},
-                {"packing", with_contacts(packing_to_json(end, width), o.choice)},
-                {"warnings", warnings},
-                {"cost", fields_to_json(RunCost{done.steps, done.time_step, earlier + stopwatch.seconds()})},
-                {"provenance", lammps_provenance(provenance("element test", o.engine.threads, stopwatch), place)}});
-  return store.finished(key);
+  return store.finish(
+      key, request,
+      {{"kind", "test"},
+       {"packing", with_contacts(packing_to_json(end, width), o.choice)},
+       {"warnings", warnings},
+       {"cost", fields_to_json(RunCost{done.steps, done.time_step, earlier + stopwatch.seconds()})},
+       {"provenance", lammps_provenance(provenance("element test", o.engine.threads, stopwatch), place)}});
 }
 
 PackingInfo packing_from_record(const Json& record) {
