@@ -8,6 +8,7 @@
 #include <kainjow/mustache.hpp>
 #include <page_script_text.hpp>
 #include <set>
+#include <sstream>
 
 #include "app/report/page_figure.hpp"
 #include "model/files/digest.hpp"
@@ -138,7 +139,15 @@ std::string class_of(const Table& table) {
   return "h" + sha256(headings).substr(0, 8);
 }
 
-/// Whether a phone has no room for it: by its words, which may wrap after a dozen characters.
+/// Characters of the longest word: headings wrap between words only.
+std::size_t longest_word(const Text& heading) {
+  std::size_t longest = 0;
+  std::istringstream words(to_plain(heading));
+  for (std::string word; words >> word;) longest = std::max(longest, character_count(plain(word)));
+  return longest;
+}
+
+/// Whether a phone has no room for it: by its words, which may wrap after a dozen characters in cells.
 bool is_wide(const Table& table) {
   constexpr std::size_t kWraps = 12, kPhone = 46;  // characters
   std::size_t width = 0;
@@ -148,7 +157,7 @@ bool is_wide(const Table& table) {
       if (i < row.size() && row[i].bar) return true;
       if (i < row.size()) longest = std::max(longest, character_count(row[i].text));
     }
-    width += std::min(longest, kWraps) + 2;
+    width += std::max(std::min(longest, kWraps), longest_word(table.columns[i].heading)) + 2;
   }
   return width > kPhone;
 }

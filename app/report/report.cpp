@@ -66,7 +66,8 @@ Section predictions(const chain::ReportInput& input, const std::vector<chain::Pa
     Figure figure = prediction_figure(input.predictions, i, input.calibration.law);
     if (prediction.provenance.is_object()) figure.command = prediction.provenance.value("command", "");
     section.blocks.push_back(drawn(figure));
-    section.blocks.push_back(folded(prediction.name + ": run by run", prediction_table(prediction)));
+    if (const Table table = prediction_table(prediction); !table.rows.empty())  // compared with nothing: none
+      section.blocks.push_back(folded(prediction.name + ": run by run", table));
   }
   if (!input.predictions.empty())
     section.blocks.push_back(folded("Solver statistics", solver_table(input.predictions)));

@@ -62,6 +62,15 @@ TEST(ReportPage, HeadingsOfAWideTableAreSaidBeforeItsCellsOnAPhone) {
   EXPECT_NE(html.find("td:nth-child(8)::before { content: \"say \\22 x\\22  [–]\"; }"), std::string::npos);
 }
 
+TEST(ReportPage, LongWordsInHeadingsMakeATableWide) {
+  const std::vector<TableColumn> columns(5, {notation("rehearsals of")});
+  const std::vector<Cell> row(5, Cell("1", 1));
+  Table wide{"wide", columns, {row}, ""}, narrow{"narrow", {columns[0]}, {{row[0]}}, ""};
+  const std::string html = page_html({"title", {}, {{"s", "heading", {{{wide, narrow}}}}}});
+  EXPECT_NE(html.find(" cards\">"), std::string::npos);
+  EXPECT_EQ(html.find(" cards\">"), html.rfind(" cards\">")) << "the narrow one fits";
+}
+
 TEST(ReportPage, ItsNumbersAreToBeHadAsTheyAre) {
   Table table{"caption", {{notation("{x} [kg]")}, {plain("ratio [–]")}}, {{Cell("1.23", 1.23456789), "words"}}, "file"};
   table.notes = {"beneath"};
