@@ -1,9 +1,12 @@
 #pragma once
 // The parameters that tests of the law begin from.
 
+#include "model/evolution.hpp"
 #include "model/parameters.hpp"
 
 namespace grainlaw::testing {
+
+inline constexpr Coupling kCouplings[] = {Coupling::energy, Coupling::single};
 
 /// The published ones with a2 of equations.md section 2, which the paper does not give.
 inline LawParameters<double> coupled_parameters() {

@@ -18,8 +18,10 @@ inline PathSegment leg_to(Mode mode, double nu, bool reverse = false) {
   return {mode, direction_of(mode, "xyz", reverse), ExtentKind::target_nu, nu};
 }
 
+inline Path path_of(double nu, std::vector<PathSegment> legs) { return {nu, Branch::unloading, std::move(legs)}; }
+
 inline std::vector<StraightSegment> path_from(double nu, std::vector<PathSegment> legs) {
-  return resolve(Path{nu, Branch::unloading, std::move(legs)});
+  return resolve(path_of(nu, std::move(legs)));
 }
 
 /// D2 to and fro: `corners` reversals divide the deviatoric strain `total` into equal parts.

@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "model/student.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw::chain {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
 
 /// Ten packings of 100 know it to `width`; at rate 1 the rate alone spoils it by `rate`, a hundred spheres by `size`.
 PlanFindings findings(double width, double rate, double size) {

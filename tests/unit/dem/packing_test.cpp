@@ -4,17 +4,17 @@
 
 #include <Eigen/LU>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include "model/vocabulary/error.hpp"
 #include "tests/support/dem_scene.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
+using testing::kNaN;
 
 Packing two_spheres() {
   return scene::state_of(scene::cubic(10e-3),
@@ -75,11 +75,11 @@ TEST(Packing, CheckNamesSphereAndQuantity) {
     return "accepted";
   };
   EXPECT_EQ(message([](Packing&) {}), "accepted");
-  for (const double bad : {0.0, -1e-3, kNaN, kInf}) {
+  for (const double bad : {0.0, -1e-3, kNaN, kInfinity}) {
     EXPECT_NE(message([&](Packing& p) { p.radius[1] = bad; }).find("sphere 71: radius"), std::string::npos);
     EXPECT_NE(message([&](Packing& p) { p.mass[0] = bad; }).find("sphere 70: mass"), std::string::npos);
   }
-  for (const double bad : {kNaN, kInf, -kInf}) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
     EXPECT_NE(message([&](Packing& p) { p.sy[1] = bad; }).find("sphere 71: position"), std::string::npos);
     EXPECT_NE(message([&](Packing& p) { p.vz[0] = bad; }).find("sphere 70: velocity"), std::string::npos);
   }
@@ -89,8 +89,8 @@ TEST(Packing, CheckNamesSphereAndQuantity) {
     int row, column;
     double value;
   };
-  const std::vector<CellEntry> bad_entries{{1, 0, 1e-3},  {2, 0, 1e-3}, {2, 1, 1e-3}, {0, 0, 0.0},
-                                           {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInf}};
+  const std::vector<CellEntry> bad_entries{{1, 0, 1e-3},  {2, 0, 1e-3}, {2, 1, 1e-3},     {0, 0, 0.0},
+                                           {1, 1, -1e-2}, {0, 1, kNaN}, {2, 2, kInfinity}};
   for (const CellEntry& bad : bad_entries) {
     EXPECT_NE(message([&](Packing& p) { p.H(bad.row, bad.column) = bad.value; }).find("cell"), std::string::npos);
   }
@@ -102,7 +102,7 @@ TEST(Packing, MinCollisionTimeIsThatOfTheTwoLightest) {
   resize(p, 4);
   p.radius = {1.2e-3, 0.6e-3, 1.4e-3, 0.7e-3};
   set_masses(p, material);
-  double least = kInf;
+  double least = kInfinity;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < i; ++j)
       least = std::min(least, collision_time(material, reduced_mass(p.mass[i], p.mass[j])));

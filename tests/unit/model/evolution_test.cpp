@@ -11,9 +11,9 @@
 namespace grainlaw {
 namespace {
 
-constexpr Coupling kCouplings[] = {Coupling::energy, Coupling::single};
+using testing::kCouplings;
 
-LawState<double> some_state() {
+LawState<double> memoryless_state() {
   LawState<double> y{0.021, {}, {}};
   y.sigma << 0.0021, -0.0007, 0.0004, 0.0011, -0.0003;
   y.F << 0.08, 0.02, -0.03, 0.01, 0.05;
@@ -93,7 +93,7 @@ TEST(Evolution, WithoutCouplingItIsEquations17And18) {
 
 TEST(Evolution, IsotropicRateIsTheBulkModulus) {
   const LawParameters<double> p = testing::coupled_parameters();
-  const LawState<double> y = some_state();
+  const LawState<double> y = memoryless_state();
   const LawState<double> r = rate_along(p, Coupling::energy, y, 0.72, direction_of(Mode::ISO));
   EXPECT_EQ(r.P, 3 * p.isotropic.B_star(0.72));
   EXPECT_TRUE(r.F.isZero());
@@ -137,7 +137,7 @@ TEST(Evolution, RateTurnsWithTheExperiment) {
   const auto turn = [&](const Deviator<double>& q) {
     return deviator<double>(Eigen::Matrix3d(R * tensor_of(q) * R.transpose()));
   };
-  const LawState<double> y = some_state(), turned{y.P, turn(y.sigma), turn(y.F)};
+  const LawState<double> y = memoryless_state(), turned{y.P, turn(y.sigma), turn(y.F)};
   StrainRate rate = some_rate(), turned_rate;
   turned_rate.tensor = R * rate.tensor * R.transpose();
   for (const Coupling coupling : kCouplings) {
@@ -152,7 +152,7 @@ TEST(Evolution, RateTurnsWithTheExperiment) {
 TEST(Evolution, ReversingShearReversesTheOddParts) {
   // (sigma, F, N) -> -(sigma, F, N) leaves dP and turns dsigma', dF'.
   const LawParameters<double> p = testing::coupled_parameters();
-  const LawState<double> y = some_state(), mirrored{y.P, -y.sigma, -y.F};
+  const LawState<double> y = memoryless_state(), mirrored{y.P, -y.sigma, -y.F};
   const LawDirection d = law_direction(some_rate()), back{d.dx, d.de, -d.N};
   for (const Coupling coupling : kCouplings) {
     const LawState<double> a = evolution_rate(p, coupling, y, 0.7, d),
@@ -165,7 +165,7 @@ TEST(Evolution, ReversingShearReversesTheOddParts) {
 
 TEST(Evolution, RateScalesWithTheSpeedOfTheParameter) {
   const LawParameters<double> p = testing::coupled_parameters();
-  const LawState<double> y = some_state();
+  const LawState<double> y = memoryless_state();
   StrainRate fast = some_rate();
   fast.tensor *= 7;
   for (const Coupling coupling : kCouplings) {
@@ -178,7 +178,7 @@ TEST(Evolution, RateScalesWithTheSpeedOfTheParameter) {
 
 TEST(Evolution, OtherScalarGivesTheSameRate) {
   const LawParameters<double> p = testing::coupled_parameters();
-  const LawState<double> y = some_state();
+  const LawState<double> y = memoryless_state();
   const LawState<long double> wide{y.P, y.sigma.cast<long double>(), y.F.cast<long double>()};
   for (const Coupling coupling : kCouplings) {
     const auto a = rate_along(p, coupling, y, 0.7, some_rate());

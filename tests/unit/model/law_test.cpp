@@ -13,7 +13,7 @@
 namespace grainlaw {
 namespace {
 
-constexpr Coupling kCouplings[] = {Coupling::energy, Coupling::single};
+using testing::kCouplings;
 
 LawState<double> some_state() {
   LawState<double> y{0.021, {}, {}, {}, {}};

@@ -3,23 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "model/vocabulary/error.hpp"
+#include "tests/support/law_path.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
+using testing::kNaN;
+using testing::path_of;
 
 PathSegment segment(Mode mode, ExtentKind kind, double extent, bool reverse = false) {
   return {mode, direction_of(mode, "xyz", reverse), kind, extent};
 }
-
-Path path_of(double nu, std::vector<PathSegment> segments) { return {nu, Branch::unloading, std::move(segments)}; }
 
 /// The message with which `path` is refused; empty when it is accepted.
 std::string refusal(const Path& path) {

@@ -12,8 +12,7 @@ namespace {
 using testing::leg;
 using testing::leg_to;
 using testing::path_from;
-
-Path path_of(double nu, std::vector<PathSegment> legs) { return {nu, Branch::unloading, std::move(legs)}; }
+using testing::path_of;
 
 /// A rehearsal of `path`, off by `error` in units of w in every quantity of the named rungs.
 Rehearsal rehearsal(const Path& path, const std::vector<std::pair<Rung, double>>& errors, double known = 0) {

@@ -7,13 +7,14 @@
 
 #include "model/student.hpp"
 #include "tests/support/law_path.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw::predict {
 namespace {
 
 using testing::leg;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
 
 /// D2 at nu = 0.74 by the reduced law, with bands.
 Prediction banded(const CalibratedLaw& law) {

@@ -3,17 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "model/vocabulary/error.hpp"
 #include "tests/support/law_path.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw::predict {
 namespace {
 
 using testing::leg;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using testing::kNaN;
 
 /// A D2 test with rows at shear_path 0, 0.005, 0.01, 0.02, 0.04 whose observations are what is predicted there.
 struct Scene {

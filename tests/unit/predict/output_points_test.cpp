@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/law_path.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw::predict {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using testing::leg;
 using testing::leg_to;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using testing::kNaN;
 
 TEST(UniformPoints, CoverEachSegmentEndsIncluded) {
   const auto path = testing::path_from(0.70, {leg(Mode::D2, 0.1), leg_to(Mode::ISO, 0.73)});

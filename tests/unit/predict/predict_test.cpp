@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "model/vocabulary/error.hpp"
 #include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw::predict {
 namespace {
@@ -17,8 +17,8 @@ using testing::leg;
 using testing::leg_to;
 using testing::path_from;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
+using testing::kNaN;
 constexpr Rung kModels[] = {Rung::reduced, Rung::evolution};
 
 Prediction run(Rung model, const std::vector<StraightSegment>& path, const std::vector<OutputPoint>& points,

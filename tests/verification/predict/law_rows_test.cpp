@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
 #include "tests/support/figure.hpp"
 #include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw {
 namespace {
@@ -26,7 +26,7 @@ using testing::leg;
 using testing::leg_to;
 using testing::path_from;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+using testing::kNaN;
 
 Prediction run(Rung model, const std::vector<StraightSegment>& path, const LawState<double>& start,
                const std::vector<OutputPoint>& points, Method method = Method::adams) {

@@ -11,14 +11,15 @@
 
 #include "predict/solvers/cvode.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace grainlaw::predict {
 namespace {
 
 using testing::expect_figure;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+using testing::kInfinity;
+using testing::kNaN;
 constexpr Method kMethods[] = {Method::adams, Method::bdf};
 
 struct Outcome {
