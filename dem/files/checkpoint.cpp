@@ -10,7 +10,7 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr SealedFormat kFormat{"GRAINRUN", 1, "checkpoint"};
+constexpr SealedFormat kCheckpointFormat{"GRAINRUN", 1, "checkpoint"};
 
 /// Calls visit with each value of this type in the row (a reference to it), in the order of the table of its fields.
 template <class Value, class AnyRow, class Visit>
@@ -74,12 +74,12 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c) {
   numbers.number(c.time_step);
   numbers.number(c.seconds);
   for (const Observation& row : c.rows) put_row(row, numbers);
-  write_sealed(file, kFormat, header, numbers);
+  write_sealed(file, kCheckpointFormat, header, numbers);
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file) {
   Checkpoint c;
-  read_sealed(file, kFormat, [&](const nlohmann::json& header, NumberReader& numbers) {
+  read_sealed(file, kCheckpointFormat, [&](const nlohmann::json& header, NumberReader& numbers) {
     c.stage = header.at("stage").get<std::string>();
     c.steps_before = whole_number<std::uint64_t>(header.at("steps_before"));
     c.segment = whole_number<int>(header.at("segment"));

@@ -6,7 +6,7 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr SealedFormat kFormat{kStateMagic, kStateFileVersion, "state file"};
+constexpr SealedFormat kStateFormat{kStateMagic, kStateFileVersion, "state file"};
 
 /// The order of the numbers in the file, told once for writing and reading: `visit` gets each scalar, `array` each
 /// array of the packing's size, `optional_array` those that a resting state does not have.
@@ -92,12 +92,12 @@ State take_state(const nlohmann::json& header, NumberReader& numbers) {
 void write_state(const std::filesystem::path& file, const State& state, WriteFile write) {
   NumberWriter numbers;
   put_state(state, numbers);
-  write_sealed(file, kFormat, state_header(state), numbers, write);
+  write_sealed(file, kStateFormat, state_header(state), numbers, write);
 }
 
 State read_state(const std::filesystem::path& file) {
   State state;
-  read_sealed(file, kFormat,
+  read_sealed(file, kStateFormat,
               [&](const nlohmann::json& header, NumberReader& numbers) { state = take_state(header, numbers); });
   return state;
 }
