@@ -68,33 +68,37 @@ check_quoted() { # file folder line header
 }
 
 include='^[[:space:]]*#[[:space:]]*include[[:space:]]*(<([^>]+)>|"([^"]+)")'
-files=0
-while IFS= read -r -d '' file; do
-  files=$((files + 1))
-  path=${file#"$root"/}
-  room=${path%%/*}
+check_include() { # file line text
+  local path=${1#"$root"/}
   folder_of "$path"
-  home=$folder
-  if [[ -z $home ]]; then
-    report "$file" 1 "no line of include_rules.txt is for ${path%/*}"
-    continue
+  if [[ -z $folder ]]; then return; fi  # said of the file
+  if [[ ! $3 =~ $include ]]; then
+    report "$1" "$2" "cannot read this include"
+  elif check_private "$1" "${path%%/*}" "$2" "${BASH_REMATCH[2]:-${BASH_REMATCH[3]}}"; then
+    return
+  elif [[ -n ${BASH_REMATCH[2]} ]]; then
+    check_angled "$1" "$2" "${BASH_REMATCH[2]}"
+  else
+    check_quoted "$1" "$folder" "$2" "${BASH_REMATCH[3]}"
   fi
-  while IFS=: read -r number text; do
-    if [[ ! $text =~ $include ]]; then
-      report "$file" "$number" "cannot read this include"
-    elif check_private "$file" "$room" "$number" "${BASH_REMATCH[2]:-${BASH_REMATCH[3]}}"; then
-      continue
-    elif [[ -n ${BASH_REMATCH[2]} ]]; then
-      check_angled "$file" "$number" "${BASH_REMATCH[2]}"
-    else
-      check_quoted "$file" "$home" "$number" "${BASH_REMATCH[3]}"
-    fi
-  done < <(grep -nE '^[[:space:]]*#[[:space:]]*include' "$file" || true)
-done < <(for room in "${!rooms[@]}"; do
+}
+
+mapfile -d '' files < <(for room in "${!rooms[@]}"; do
   if [[ -d $root/$room ]]; then
     find "$root/$room" -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' \) -print0
   fi
 done)
+for file in "${files[@]}"; do
+  path=${file#"$root"/}
+  folder_of "$path"
+  if [[ -z $folder ]]; then report "$file" 1 "no line of include_rules.txt is for ${path%/*}"; fi
+done
+# one process for all files
+if ((${#files[@]} > 0)); then
+  while IFS= read -r -d '' file && IFS=: read -r number text; do
+    check_include "$file" "$number" "$text"
+  done < <(printf '%s\0' "${files[@]}" | xargs -0 grep -HnZE '^[[:space:]]*#[[:space:]]*include' || true)
+fi
 
-printf '%d files, %d violations\n' "$files" "$violations"
-((files > 0 && violations == 0))
+printf '%d files, %d violations\n' ${#files[@]} "$violations"
+((${#files[@]} > 0 && violations == 0))

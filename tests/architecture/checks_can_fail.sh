@@ -4,12 +4,12 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-tree=$(mktemp -d)
-trap 'rm -rf "$tree"' EXIT
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+tree=$folder/clean
 failures=0
 
-clean_tree() {
-  rm -rf "${tree:?}"/*
+make_clean_tree() {
   mkdir -p "$tree"/{model/vocabulary,model/files,dem/engine/lanes,dem/statics,dem/element_tests,dem/runs}
   mkdir -p "$tree"/{fit/{data,statistics,stages},predict/{solvers,studies},chain,app,tests/unit}
   echo '#include <Eigen/Core>' >"$tree/model/vocabulary/tensor.hpp"
@@ -44,6 +44,11 @@ clean_tree() {
   printf '// Formulas: docs/theory/index.md, sections Wide\n// weights and Ends.\n' >>"$tree/fit/calibrate.hpp"
 }
 
+clean_tree() {
+  rm -rf "$folder/tree"
+  cp -r "$folder/clean" "$folder/tree"
+}
+
 # expect CHECK PATTERN: CHECK must fail and name the PATTERN.
 expect() {
   local output
@@ -63,6 +68,8 @@ sow() {
   expect check_includes.sh "$3"
 }
 
+make_clean_tree
+tree=$folder/tree
 clean_tree
 for check in check_includes.sh check_files.sh check_docs.sh; do
   if ! bash "$here/$check" "$tree"; then
