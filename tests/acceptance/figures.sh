@@ -18,6 +18,23 @@ figure() { # name value bound
   if [[ $verdict != ok ]]; then short_figures=$((short_figures + 1)); fi
 }
 
+# Least of three times of a fixed piece of work that is not ours, on one core of this machine now [s].
+yardstick() {
+  local begin
+  for _ in 1 2 3; do
+    begin=$EPOCHREALTIME
+    perl -e '$sum += sqrt($_) for 1 .. 4000000'
+    awk -v a="$begin" -v b="$EPOCHREALTIME" 'BEGIN { print b - a }'
+  done | sort -g | head -1
+}
+
+# A time, and how many yardsticks it is: the bound is on those, so that it holds on a faster machine and in a slower hour.
+figure_of_time() { # name seconds bound
+  figure "$1.seconds" "$2" stated
+  figure "$1.yardsticks" "$(awk -v seconds="$2" -v yardstick="$(yardstick)" 'BEGIN {
+    print (seconds + 0 > 0 ? sprintf("%.4g", seconds / yardstick) : "missing") }')" "$3"
+}
+
 # Figures that tests measure and print as "figure NAME VALUE BOUND", meaning VALUE <= BOUND. Those of a missing or
 # failing executable are reported as short under the names given.
 figures_of_tests() { # executable gtest-filter expected-name-prefix...

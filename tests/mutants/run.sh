@@ -71,7 +71,7 @@ copy_sources() {
   [[ -d $tree ]] || git clone -q --shared "$root" "$tree"
   git -C "$tree" fetch -q "$root" HEAD
   git -C "$tree" checkout -q --force --detach FETCH_HEAD
-  source_digest=$(git -C "$tree" ls-tree -r HEAD -- CMakeLists.txt cmake model dem fit predict app tests examples docs |
+  source_digest=$(git -C "$tree" ls-tree -r HEAD -- CMakeLists.txt cmake model dem fit predict chain app tests examples docs |
     grep -vE $'\ttests/(mutants|acceptance|long)/' | sha256sum)
   source_digest=${source_digest%% *}
 }
