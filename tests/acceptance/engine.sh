@@ -71,7 +71,7 @@ floor() {
 quickstart() {
   rm -rf "$out/quickstart"
   examples/quickstart/run.sh "$out/quickstart" >"$out/quickstart.txt" 2>"$out/quickstart.err"
-  figure_of_time quickstart "$(sed -n 's/^Whole chain after the build: \([0-9]*\) s.*/\1/p' "$out/quickstart.txt")" "<=600"
+  figure_of_time quickstart "$(sed -n 's/^Whole chain after the build: \([0-9]*\) s.*/\1/p' "$out/quickstart.txt")" "<=1000"
 }
 
 beside_lammps_on_one_core

@@ -25,7 +25,7 @@ page() { # name folder most-megabytes
     seconds=$(awk -v a="$begin" -v b="$EPOCHREALTIME" 'BEGIN { printf "%.2f", b - a }')
     least=$(awk -v a="$least" -v b="$seconds" 'BEGIN { print b < a ? b : a }')
   done
-  figure_of_time "page.$name" "$least" "<=10"
+  figure_of_time "page.$name" "$least" "<=17"
   figure "page.$name.megabytes" "$(stat -c %s "$html" | awk '{ printf "%.2f", $1 / 1e6 }')" "<=$3"
   rm -rf "${pages:?}/$name"
   tests/page/run.sh "$PWD/build/release/page" "$html" "$pages/$name" >"$log" || grep '^not ok' "$log" >&2 || true

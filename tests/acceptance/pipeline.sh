@@ -41,7 +41,7 @@ quickstart() {
       while read -r name value; do printf '%s %s\n' "$name" "$value"; done
   done >build/acceptance/predictions.txt
   while read -r name value; do figure "$name" "$value" stated; done <build/acceptance/predictions.txt
-  figure_of_time chain "$(cut -d' ' -f1 "$cost")" "<=1800"
+  figure_of_time chain "$(cut -d' ' -f1 "$cost")" "<=3000"
   figure chain.memory_MB "$(awk '{ print $2 / 1024 }' "$cost")" "<=1024"
 }
 
