@@ -128,7 +128,7 @@ lammps_times() {
     figure "lammps.time.N$N.ranks1" "$(lammps_time lammps "" "$particles" "$tiles" "$steps")" stated
     figure "lammps.time.N$N.ranks2" "$(lammps_time lammps "mpirun --oversubscribe -n 2" "$particles" "$tiles" "$steps")" stated
     rm -f "$lammps_out/spheres-$particles-$tiles".*
-  done < <(echo "1000 1 2000"; echo "1250 2 200"; [[ $quick == yes ]] || { echo "800 5 20"; [[ ${GRAINLAW_MILLION:-no} == no ]] || echo "1000 10 6"; })
+  done < <(echo "1000 1 2000"; echo "1250 2 200"; [[ $quick == yes ]] || { echo "800 5 20"; [[ ${GRAINLAW_MILLION:-no} == no ]] || echo "1000 10 40"; })
 }
 
 # What friction does, from a small study: where the packing jams, and the stress ratio that it bears.

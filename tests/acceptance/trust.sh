@@ -2,7 +2,7 @@
 # tests/acceptance/trust.sh [--quick]: what a stranger may rely on, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
 # What was lost or overwritten once; calls of the system that fail and kills all along the chain; digits over threads and builds;
-# stress against the energy; the suites as tests/full.sh left them. --quick: few faults and kills, no mutants.
+# stress against the energy and what is conserved; the suites as tests/full.sh left them. --quick: few faults and kills, no mutants.
 set -euo pipefail
 
 # shellcheck source=tests/acceptance/setup.sh
@@ -60,6 +60,24 @@ digits() {
   done
 }
 
+# What the engine has to conserve, over 10^9 particle-steps (docs/conserved.md).
+conserved() {
+  local name value bound options=()
+  [[ $quick == no ]] || options=(--small)
+  examples/conserved/run.sh "$out/conserved" "${options[@]}" >"$out/conserved.txt" 2>"$out/conserved.log" || tail -3 "$out/conserved.log" >&2
+  for name in double.momentum double.volume mixed.volume mixed.momentum mixed.energy double.energy double.half_step.energy double.particle_steps; do
+    value=$(value_of "conserved.$name" "$out/conserved.txt")
+    case $name in
+      double.momentum | *.volume) bound="<=1e-12" ;;
+      double.particle_steps) bound=$([[ $quick == yes ]] && echo stated || echo ">=9e8") ;;
+      *) bound=stated ;;
+    esac
+    figure "conserved.$name" "$value" "$bound"
+  done
+  figure conserved.energy.falls_with_half_the_step "$(awk '$1 == "conserved.double.energy" { a = $2 } $1 == "conserved.double.half_step.energy" { b = $2 }
+    END { print (b > 0 ? a / b : "missing") }' "$out/conserved.txt")" ">=1.8"
+}
+
 suites() {
   local stage
   for stage in release clang assertions asan-ubsan tsan valgrind fuzz; do
@@ -75,7 +93,8 @@ mutants() {
 finds
 faults
 digits
-figures_of_tests $bin/verification_dem '*.D7*' D7.random
+figures_of_tests $bin/verification_dem '*.D7*' D7.random D7.relaxed
+conserved
 suites
 [[ $quick == yes ]] || mutants
 finish_figures
