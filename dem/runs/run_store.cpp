@@ -35,8 +35,9 @@ bool is_whole(const Json& record) {
 }
 
 void remove_scratch(const fs::path& run) {
-  std::vector<fs::path> scratch;
   std::error_code ignored;  // what stays is no part of the run
+  for (const char* name : {kCheckpoint, kPreviousCheckpoint, kProgress}) fs::remove(run / name, ignored);
+  std::vector<fs::path> scratch;
   for (const auto& entry : fs::directory_iterator(run, ignored)) {
     if (is_scratch(entry.path().filename().string())) scratch.push_back(entry.path());
   }

@@ -4,6 +4,7 @@
 // (at least a fifth of the mean), since rates scatter in proportion to their size.
 
 #include "fit/data/density_series.hpp"
+#include "fit/stages/shear_fit.hpp"
 #include "fit/stages/stage.hpp"
 
 namespace grainlaw::fit {

@@ -50,9 +50,7 @@ std::optional<double> number_or_nan(std::string_view word) {
 
 class TextTable {
  public:
-  TextTable(const std::string& name, const TableLayout& layout) : layout_(layout), delimiter_(layout.delimiter) {
-    table_.name = name;
-  }
+  TextTable(const std::string& name, const TableLayout& layout) : delimiter_(layout.delimiter) { table_.name = name; }
 
   ForeignTable read(std::string_view text) {
     if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
@@ -127,7 +125,6 @@ class TextTable {
     table_.lines.push_back(line_);
   }
 
-  const TableLayout& layout_;
   char delimiter_;
   ForeignTable table_;
   std::string_view comment_;

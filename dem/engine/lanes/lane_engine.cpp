@@ -222,14 +222,14 @@ void repick_near(LaneEngine& engine, Stepping& s) {
     take_rows_of(s, lanes);
     const std::array<double, 3> edge = edges(engine.near_H, lanes.unit);
     const double skin = s.skin / lanes.unit.length, dt = s.dt / lanes.unit.time;
-    const double steps = engine.near_step < 0 ? 0 : static_cast<double>(s.state.step - engine.near_step);
+    const double steps = engine.near_step < 0 ? 0 : static_cast<double>(static_cast<std::int64_t>(s.state.step) - engine.near_step);
     const NearSkins skins{kNearSteps * dt, steps * dt, kNearMemory, kLeastNearSkin * skin, kMostNearSkin * skin, allowed(s, lanes, 0)};
     std::vector<double> reach(block_count(lanes.spheres));
     for_each_block_of_groups(s, lanes, [&](std::size_t block, std::size_t begin, std::size_t end) {
       reach[block] = choose_near_skins(lanes, edge, skins, begin, end);
     });
     engine.near_reach = *std::max_element(reach.begin(), reach.end()) * lanes.unit.length;
-    engine.near_step = s.state.step;
+    engine.near_step = static_cast<std::int64_t>(s.state.step);
     for_each_block_of_groups(s, lanes, [&](std::size_t, std::size_t begin, std::size_t end) { pick_near(lanes, edge, begin, end); });
   });
 }
