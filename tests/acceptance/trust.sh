@@ -8,7 +8,7 @@ set -euo pipefail
 # shellcheck source=tests/acceptance/setup.sh
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
 points=10000 kills=1000
-[[ $quick == no ]] || points=200 kills=20
+[[ $quick == no ]] || points=60 kills=8
 
 # Each find of a stranger has a test with its message.
 finds() {
