@@ -189,7 +189,7 @@ void inspect_json(const fs::path& file, const Company& company, const fs::path& 
     case Schema::mapping:
       return inspect_mapping(file, execution, seen);
     case Schema::prior:
-      seen.holds = {counted(fit::read_prior(file).size.packings, "packing")};
+      seen.holds = {counted(static_cast<std::size_t>(fit::read_prior(file).size.packings), "packing")};
       return;
     default:
       return;

@@ -126,7 +126,7 @@ int main(int argc, char** argv) try {
          {std::pair{"mixed", dem::Precision::mixed}, {"double", dem::Precision::full}}) {
       dem::EngineOptions options;
       options.precision = precision;
-      const auto print = [&](const char* figure, double value) {
+      const auto print = [&, name = name](const char* figure, double value) {
         fmt::print("{}.{}.nu{:.2f} {:.3f}\n", figure, name, nu, value);
       };
       if (other->get_option("--threads")->count() > 0) {

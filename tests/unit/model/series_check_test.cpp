@@ -152,10 +152,13 @@ TEST(SeriesCheck, NamesOtherMeasuresOfStrain) {
 TEST(SeriesCheck, NamesSwappedColumns) {
   for (const char* name : {"D2-0.68-s1", "D2-0.74-s2", "D2-0.79-s3"}) {
     for (const auto& [i, j] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
-      expect_caught(name, [&](Observation& o) { swap_axes(o.stress.tensor, i, j); }, {"column 'stress'", "swapped"});
+      expect_caught(name, [&, i = i, j = j](Observation& o) { swap_axes(o.stress.tensor, i, j); },
+                    {"column 'stress'", "swapped"});
       if (name != std::string("D2-0.79-s3"))  // hardly anisotropic
-        expect_caught(name, [&](Observation& o) { swap_axes(o.fabric.tensor, i, j); }, {"column 'fabric'", "swapped"});
-      expect_caught(name, [&](Observation& o) { swap_axes(o.strain.tensor, i, j); }, {"column 'strain'", "swapped"});
+        expect_caught(name, [&, i = i, j = j](Observation& o) { swap_axes(o.fabric.tensor, i, j); },
+                      {"column 'fabric'", "swapped"});
+      expect_caught(name, [&, i = i, j = j](Observation& o) { swap_axes(o.strain.tensor, i, j); },
+                    {"column 'strain'", "swapped"});
     }
   }
   for (const char* name : {"UNI-cycle-0.64-s1", "D3-0.70-s4"}) {
