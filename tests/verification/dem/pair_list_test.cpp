@@ -9,6 +9,7 @@
 
 #include "dem/engine/averages.hpp"
 #include "dem/engine/lanes/lane_list.hpp"
+#include "tests/support/dem_compression.hpp"
 #include "tests/support/dem_families.hpp"
 #include "tests/support/dem_pair_list.hpp"
 #include "tests/support/figure.hpp"
