@@ -18,7 +18,7 @@ done
 
 # --json has what stands on the page; the page itself is not needed for it
 "$grainlaw" report out --json >page.json || fail "report --json"
-jq -e '[.sections[].contents[] | select(.figure).panels[].series[].y | length] | add > 5000' page.json >/dev/null || fail "numbers of figures"
+jq -e '[.sections[].contents[] | select(.figure).panels[].series[].y | length] | add > 8000' page.json >/dev/null || fail "numbers of figures"
 jq -e '[.sections[].contents[] | select(.table).rows[][] | select(.value)] | length > 1000' page.json >/dev/null || fail "numbers of tables"
 for id in $(jq -r '.sections[].contents[] | select(.figure) | .figure' page.json); do
   grep -q "<figure id=\"$id\">" page.html || fail "figure $id"
