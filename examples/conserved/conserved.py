@@ -12,6 +12,7 @@ import sys
 import matplotlib
 
 matplotlib.use("Agg")
+matplotlib.rcParams["svg.fonttype"] = "none"  # text stays text
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -19,19 +20,16 @@ out = pathlib.Path(sys.argv[1])
 PANELS = (("energy", "energy residual over work", 1e-5), ("momentum", r"$|\sum m\,v|\;/\;\sum m\,|v|$", 1e-17), ("volume", r"$|V/V_0-1|$", 1e-17))
 
 
-def table(file):
-    header, *rows = csv.reader(open(file))
-    return {name.split("[")[0]: np.array([float(row[i]) if row[i] else np.nan for row in rows]) for i, name in enumerate(header)}
-
-
 def conserved(folder):
     """Particle-steps so far, and each quantity at the states on the way."""
-    run, series, frames = json.load(open(folder / "simulation.json")), table(folder / "series.csv"), table(folder / "frames.csv")
+    run = json.load(open(folder / "simulation.json"))
+    series, frames = (np.genfromtxt(folder / name, delimiter=",", names=True, deletechars="") for name in ("series.csv", "frames.csv"))
+    time = frames["time[s]"]
     states = [np.load(file) for file in sorted((folder / "states").glob("frame-*.npz"))]
-    assert len(states) == len(frames["time"]), folder
+    assert len(states) == len(time), folder
     ids, radii, volume = states[0]["id"], states[0]["r"], np.linalg.det(states[0]["cell"])
-    result = {"particle_steps": frames["time"] / series["time"][-1] * run["cost"]["steps"] * len(ids),
-              "energy": np.abs(np.interp(frames["time"], series["time"], series["energy_residual"])),
+    result = {"particle_steps": time / series["time[s]"][-1] * run["cost"]["steps"] * len(ids),
+              "energy": np.abs(np.interp(time, series["time[s]"], series["energy_residual"])),
               "momentum": [], "volume": []}
     for state in states:
         assert np.array_equal(state["id"], ids) and np.array_equal(state["r"], radii), "spheres changed"
@@ -59,8 +57,7 @@ for axis, (name, label, least) in zip(axes, PANELS):
     axis.set_ylim(least, 1e-2 if name == "energy" else 1e-5 if name == "momentum" else 1e-12)
     axis.grid(True, lw=.3)
 axes[0].legend()
-for kind in ("svg", "png"):
-    figure.savefig(out / f"conserved.{kind}", metadata={"Date": None} if kind == "svg" else None, dpi=100)
+figure.savefig(out / "conserved.svg", metadata={"Date": None})
 
 for run, result in results.items():
     print(f"conserved.{run}.particle_steps {result['particle_steps'][-1]:.4g}")
