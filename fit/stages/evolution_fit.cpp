@@ -1,6 +1,5 @@
 #include "fit/stages/evolution_fit.hpp"
 
-#include <ceres/jet.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +13,6 @@ namespace grainlaw::fit {
 namespace {
 
 constexpr double kVolumetricPath = 1e-3;  // |d eps_vol| of a trajectory that says something about the coupling
-constexpr int kMostParameters = 16;
-using Jet = ceres::Jet<double, kMostParameters>;
 
 std::string quantity_name(char symbol, std::size_t axis) {
   return axis == 0 ? std::string(1, symbol) + "_par" : std::string(1, symbol) + "_axis" + std::to_string(axis + 1);
@@ -54,9 +51,8 @@ ResidualBlock evolution_block(const Trajectory& t, const LawParameters<double>& 
         [&](const LawState<double>& y) { return y.F.dot(n); },
         [&](const TrajectoryRow& row) { return row.weight / options.fabric_scale; });
   }
-  block.evaluate = differentiated<Jet>(
-      TrajectoryMisfit{t, fixed, index, Rung::evolution, options.coupling, options.max_step, t.axes.size()},
-      static_cast<int>(index.size()), block.rows());
+  block.evaluate =
+      differentiated({t, fixed, index, Rung::evolution, options.coupling, options.max_step, t.axes.size()});
   return block;
 }
 

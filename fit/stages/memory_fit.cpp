@@ -1,6 +1,5 @@
 #include "fit/stages/memory_fit.hpp"
 
-#include <ceres/jet.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +16,6 @@ namespace {
 constexpr std::array kFree{"memory.G",   "memory.alpha", "memory.k",   "memory.lambda",
                            "memory.chi", "memory.kappa", "memory.c_F", "memory.a2"};
 constexpr std::size_t kVolumetric = 2;
-using MemoryJet = ceres::Jet<double, static_cast<int>(kFree.size())>;
 constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number
 constexpr double kWindowRounding = 1e-9;
 
@@ -70,9 +68,7 @@ ResidualBlock memory_block(const Trajectory& t, const LawParameters<double>& fix
   add_channel(
       t, "F_par", shear ? Counted{options.lag_window} : all, block,
       [](const Trajectory& of, const LawState<double>& y) { return y.F.dot(of.axes.front()); }, options.fabric_scale);
-  block.evaluate =
-      differentiated<MemoryJet>(TrajectoryMisfit{t, fixed, index, Rung::memory, Coupling::energy, options.max_step, 1},
-                                static_cast<int>(index.size()), block.rows());
+  block.evaluate = differentiated({t, fixed, index, Rung::memory, Coupling::energy, options.max_step, 1});
   return block;
 }
 

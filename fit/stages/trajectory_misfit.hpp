@@ -1,6 +1,7 @@
 #pragma once
 // model - data of one trajectory for values of some parameters, as the coupled fits of the rungs differentiate it.
 
+#include <functional>
 #include <vector>
 
 #include "fit/stages/trajectory.hpp"
@@ -16,24 +17,9 @@ struct TrajectoryMisfit {
   Coupling coupling;
   double max_step;   ///< of the integration, deviatoric or volumetric strain [-]
   std::size_t axes;  ///< at most trajectory.axes.size()
-
-  /// `x`: one value for each of `index`; `misfit`: rows x (1 + 2 axes). False where the law is not defined.
-  template <class T>
-  bool operator()(const T* x, T* misfit) const {
-    LawParameters<T> p = cast<T>(fixed);
-    const auto field = fields(p);
-    for (std::size_t k = 0; k < index.size(); ++k) *field[index[k]] = x[k];
-    const std::size_t rows = trajectory.rows.size();
-    return integrate<T>(trajectory, p, rung, coupling, max_step, [&](std::size_t i, const LawState<T>& y) {
-      const LawState<double>& data = trajectory.rows[i].data;
-      misfit[i] = y.P - data.P;
-      for (std::size_t a = 0; a < axes; ++a) {
-        const Deviator<T> n = trajectory.axes[a].template cast<T>();
-        misfit[rows * (1 + a) + i] = y.sigma.dot(n) / y.P - data.sigma.dot(trajectory.axes[a]) / data.P;
-        misfit[rows * (1 + axes + a) + i] = y.F.dot(n) - data.F.dot(trajectory.axes[a]);
-      }
-    });
-  }
 };
+
+/// `misfit` as ResidualBlock::evaluate: of rows x (1 + 2 axes); false where the law is not defined.
+std::function<bool(const double* x, double* misfit, double* jacobian)> differentiated(const TrajectoryMisfit& misfit);
 
 }  // namespace grainlaw::fit

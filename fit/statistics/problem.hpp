@@ -3,6 +3,7 @@
 // model - data with exact derivatives. No solver's header in here.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <string>
@@ -60,19 +61,25 @@ int row_count(const std::vector<ResidualBlock>& blocks);
 bool evaluate(const std::vector<ResidualBlock>& blocks, const Eigen::VectorXd& x, int threads, double* misfit,
               double* jacobian);
 
-/// Values and Jacobian of `functor(const T* x, T* misfit) -> bool` by forward differentiation. `Jet` is a dual number
-/// with at least `parameters` partial derivatives: Jet(value, k), .a and .v.
+/// Values and Jacobian of `functor(const T* x, T* misfit) -> bool` by forward differentiation. `Jet` is a dual number of
+/// Jet::DIMENSION partial derivatives: Jet(value, k), .a and .v. More `parameters` take more than one pass.
 template <class Jet, class Functor>
 auto differentiated(Functor functor, int parameters, int rows) {
   return [functor = std::move(functor), parameters, rows](const double* x, double* misfit, double* jacobian) {
-    if (jacobian == nullptr) return static_cast<bool>(functor(x, misfit));
+    if (jacobian == nullptr || parameters == 0) return static_cast<bool>(functor(x, misfit));
+    constexpr auto width = static_cast<std::size_t>(Jet::DIMENSION);
     const auto n = static_cast<std::size_t>(parameters), m = static_cast<std::size_t>(rows);
     std::vector<Jet> at(n), values(m);
-    for (std::size_t k = 0; k < n; ++k) at[k] = Jet(x[k], static_cast<int>(k));
-    if (!functor(at.data(), values.data())) return false;
-    for (std::size_t i = 0; i < m; ++i) {
-      misfit[i] = values[i].a;
-      for (std::size_t k = 0; k < n; ++k) jacobian[i * n + k] = values[i].v[static_cast<Eigen::Index>(k)];
+    for (std::size_t first = 0; first < n; first += width) {
+      const std::size_t last = std::min(n, first + width);
+      for (std::size_t k = 0; k < n; ++k) at[k] = Jet(x[k]);
+      for (std::size_t k = first; k < last; ++k) at[k] = Jet(x[k], static_cast<int>(k - first));
+      if (!functor(at.data(), values.data())) return false;
+      for (std::size_t i = 0; i < m; ++i) {
+        misfit[i] = values[i].a;
+        for (std::size_t k = first; k < last; ++k)
+          jacobian[i * n + k] = values[i].v[static_cast<Eigen::Index>(k - first)];
+      }
     }
     return true;
   };

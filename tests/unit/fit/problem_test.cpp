@@ -10,9 +10,11 @@ namespace {
 
 /// a + b d with d*d = 0: the smallest dual number that differentiated() accepts.
 struct Dual {
+  static constexpr int DIMENSION = 2;
   double a = 0;
   Eigen::Vector2d v = Eigen::Vector2d::Zero();
   Dual() = default;
+  explicit Dual(double value) : a(value) {}
   Dual(double value, int k) : a(value) { v(k) = 1; }
 };
 Dual operator*(const Dual& x, const Dual& y) {
@@ -39,6 +41,22 @@ TEST(ResidualBlock, DifferentiatesRowByRow) {
   r = {};
   ASSERT_TRUE(evaluate(x.data(), r.data(), nullptr));
   EXPECT_EQ(r, (std::array<double, 2>{15, 9}));
+}
+
+TEST(ResidualBlock, DifferentiatesMoreParametersInMorePasses) {
+  const auto evaluate = differentiated<Dual>(
+      [](const auto* x, auto* misfit) {
+        misfit[0] = x[0] * x[1] * x[2];
+        misfit[1] = x[3] * x[4];
+        return true;
+      },
+      5, 2);
+  const std::array<double, 5> x{2, 3, 5, 7, 11};
+  std::array<double, 2> r{};
+  std::array<double, 10> J{};
+  ASSERT_TRUE(evaluate(x.data(), r.data(), J.data()));
+  EXPECT_EQ(r, (std::array<double, 2>{30, 77}));
+  EXPECT_EQ(J, (std::array<double, 10>{15, 10, 6, 0, 0, 0, 0, 0, 11, 7}));
 }
 
 // In whichever thread memory runs out.
