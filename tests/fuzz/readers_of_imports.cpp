@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 
 #include "chain/import/import.hpp"
 #include "model/files/series_csv.hpp"
@@ -11,8 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// All that `grainlaw import` does before it writes: what is taken must be rows as our own files may hold them.
-void import_by(const fs::path& mapping_file) {
-  const chain::Mapping mapping = chain::read_mapping(mapping_file);
+void import_by(const chain::Mapping& mapping) {
   for (const chain::ForeignTest& test : chain::read_foreign(mapping, {})) {
     const chain::ImportedTest taken = chain::imported(mapping, test);
     if (taken.record.rows.size() < 2) throw Finding("a test of less than two rows was taken");
@@ -27,10 +27,14 @@ void import_by(const fs::path& mapping_file) {
 }  // namespace
 
 std::vector<Reader> readers_of_imports(const fs::path&) {
-  const auto beside = [](std::string_view, const fs::path& file) { import_by(file.parent_path() / "mapping.json"); };
+  const auto own = [](std::string_view, const fs::path& file) { import_by(chain::read_mapping(file)); };
+  // of one file, which is not the one that changes: it is read once
+  const auto beside = [mapping = std::optional<chain::Mapping>()](std::string_view, const fs::path& file) mutable {
+    if (!mapping) mapping = chain::read_mapping(file.parent_path() / "mapping.json");
+    import_by(*mapping);
+  };
   return {
-      {"mapping", Shape::json, "mapping/mapping.json",
-       [](std::string_view, const fs::path& file) { import_by(file); }},
+      {"mapping", Shape::json, "mapping/mapping.json", own},
       {"table", Shape::csv, "table/table.csv", beside},
       {"npy", Shape::binary, "npy/table.npy", beside},
       {"npz", Shape::binary, "npz/table.npz", beside},
@@ -40,8 +44,7 @@ std::vector<Reader> readers_of_imports(const fs::path&) {
       {"vtp", Shape::csv, "vtp/spheres.vtp", beside},
       {"vtp-encoded", Shape::binary, "vtp-encoded/spheres.vtp", beside},
       {"spheres-text", Shape::csv, "spheres-text/spheres.txt", beside},
-      {"particles", Shape::json, "particles/mapping.json",
-       [](std::string_view, const fs::path& file) { import_by(file); }},
+      {"particles", Shape::json, "particles/mapping.json", own},
   };
 }
 
