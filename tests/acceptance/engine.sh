@@ -68,6 +68,25 @@ floor() {
   figure force_pass.cycles_of_16_pairs.floor 42 stated
 }
 
+# Each kernel beside its ceiling: the instructions of one call, counted under callgrind, at the rate of instructions that wait for
+# nothing. The widest vectors that callgrind knows are AVX2's.
+ceilings() {
+  local json=$out/ceilings.json name count
+  rm -f "$out"/count.*
+  valgrind --tool=callgrind --instr-atstart=no --callgrind-out-file="$out/count" $bin/bench_kernels --count 2>"$out/count.err" ||
+    tail -3 "$out/count.err" >&2
+  taskset -c 0 $bin/bench_kernels --benchmark_filter='^peak$|/AVX2$|^averages$' --benchmark_format=json >"$json"
+  for name in {force_and_kick,kick_and_drift,pick_near,arrange}/{mixed,double}/AVX2 averages; do
+    count=$(awk -v name="$name" '$1 == "desc:" && $2 == "Trigger:" { found = $5 == name; spheres = $6 }
+      $1 == "totals:" && found { print $2 / spheres }' "$out"/count.*)
+    jq -r --arg name "$name" --arg count "${count:-missing}" '(.benchmarks[] | select(.name == "peak") | .per_ns) as $peak
+      | .benchmarks[] | select(.name == $name) | .["ns/sphere"] as $ns | ($count | tonumber? // null) as $n
+      | "instructions \($n // "missing") ceiling \(if $n then $n / $peak else "missing" end) reached \(
+         if $n then $n / $peak / $ns else "missing" end)"' "$json" | xargs -n 2 |
+      while read -r what value; do figure "$what.${name//\//.}" "$value" stated; done
+  done
+}
+
 quickstart() {
   rm -rf "$out/quickstart"
   examples/quickstart/run.sh "$out/quickstart" >"$out/quickstart.txt" 2>"$out/quickstart.err"
@@ -76,6 +95,7 @@ quickstart() {
 
 beside_lammps_on_one_core
 floor
+ceilings
 figures_of_tests $bin/verification_dem 'Precision*:PortableBits.*:Threads.*' precision.mixed.force precision.mixed.P_star \
   precision.statistics R2.differing_targets R1.differing_hashes
 GRAINLAW_TEST_PRECISION=mixed figures_of_tests $bin/verification_dem 'Restart.R5*:Threads.*' R5.differing_restarts R1.differing_hashes

@@ -1,12 +1,29 @@
-// The passes of one step by themselves, in ns per sphere, for every kind of vector instructions (Google Benchmark):
+// The passes of one step, the list and a row of averages by themselves, in ns per sphere, for every kind of vector instructions
+// (Google Benchmark), and what the processor does at most:
 //   bench_kernels
+//   valgrind --tool=callgrind --instr-atstart=no --callgrind-out-file=FILE bench_kernels --count
+// --count: each of them once under callgrind, which leaves the instructions of each in a FILE.N of its own.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <numeric>
 #include <string>
+#include <string_view>
+#include <vector>
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#else
+#define CALLGRIND_START_INSTRUMENTATION
+#define CALLGRIND_STOP_INSTRUMENTATION
+#define CALLGRIND_ZERO_STATS
+#define CALLGRIND_DUMP_STATS_AT(name)
+#endif
 
+#include "dem/engine/averages.hpp"
 #include "dem/engine/lanes/lane_list.hpp"
 #include "dem/engine/lanes/lane_pass.hpp"
 #include "dem/engine/lanes/lane_search.hpp"
@@ -63,9 +80,68 @@ struct Scene {
   }
 };
 
-void per_sphere(benchmark::State& state) {
+/// Something of which one call is measured.
+struct Kernel {
+  std::string name;
+  std::function<std::function<void()>()> prepared;  ///< the call, ready to be repeated
+  std::function<double()> tiers;                    ///< per sphere, sixteen pairs each, of what was prepared last; may be empty
+};
+
+template <class Real>
+std::vector<Kernel> kernels_of(const std::string& precision, const std::string& target) {
+  std::vector<Kernel> kernels;
+  const auto scene = std::make_shared<std::unique_ptr<Scene<Real>>>();
+  const auto add = [&](const std::string& name, auto pass) {
+    const auto prepared = [=] {
+      use_vector_target(target);
+      *scene = std::make_unique<Scene<Real>>();
+      return [=] { pass(**scene); };
+    };
+    const auto tiers = [=] {
+      const auto& count = (*scene)->lanes.near_count;
+      return std::accumulate(count.begin(), count.end(), 0.0) / kSpheres;
+    };
+    kernels.push_back({fmt::format("{}/{}/{}", name, precision, target), prepared, tiers});
+  };
+  add("force_and_kick", [](Scene<Real>& s) {
+    benchmark::DoNotOptimize(force_and_kick(s.lanes, s.step, 0, s.lanes.group.size()));
+  });
+  add("kick_and_drift", [](Scene<Real>& s) {
+    benchmark::DoNotOptimize(kick_and_drift(s.lanes, s.step, 0, s.lanes.group.size()));
+  });
+  add("pick_near", [](Scene<Real>& s) { pick_near(s.lanes, s.step.edge, 0, s.lanes.group.size()); });
+  add("arrange", [](Scene<Real>& s) { arrange(s.lanes, s.step.edge, s.skin, s.near_skin, s.team); });
+  return kernels;
+}
+
+/// The sums over contacts of one row of a series, over a list that is there.
+Kernel averages() {
+  return {"averages",
+          [] {
+            const CellMotion still{packing().packing.H, Eigen::Matrix3d::Zero()};
+            const auto sim = std::make_shared<Simulation>(packing(), EngineOptions{}, still);
+            return [sim, still] { benchmark::DoNotOptimize(observe(*sim, still, Deviator<double>::Zero())); };
+          },
+          {}};
+}
+
+std::vector<Kernel> all_kernels() {
+  std::vector<Kernel> all;
+  for (const std::string& target : vector_targets()) {
+    for (const auto& of : {kernels_of<float>("mixed", target), kernels_of<double>("double", target)})
+      all.insert(all.end(), of.begin(), of.end());
+  }
+  all.push_back(averages());
+  return all;
+}
+
+void run_kernel(benchmark::State& state, const Kernel& kernel) {
+  const std::function<void()> pass = kernel.prepared();
+  for (auto _ : state) pass();
   state.counters["ns/sphere"] = benchmark::Counter(static_cast<double>(state.iterations()) * kSpheres * 1e-9,
                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  if (kernel.tiers) state.counters["tiers/sphere"] = kernel.tiers();
+  use_vector_target("");
 }
 
 /// Cycles per nanosecond, by additions that wait for each other.
@@ -82,63 +158,52 @@ void clock_rate(benchmark::State& state) {
       benchmark::Counter(static_cast<double>(state.iterations()) * kAdditions * 1e-9, benchmark::Counter::kIsRate);
 }
 
-template <class Real>
-void force_and_kick_pass(benchmark::State& state, const std::string& target) {
-  use_vector_target(target);
-  Scene<Real> scene;
-  for (auto _ : state) benchmark::DoNotOptimize(force_and_kick(scene.lanes, scene.step, 0, scene.lanes.group.size()));
-  per_sphere(state);
-  const auto& tiers = scene.lanes.near_count;
-  state.counters["tiers/sphere"] = std::accumulate(tiers.begin(), tiers.end(), 0.0) / kSpheres;
-  use_vector_target("");
+#ifdef __x86_64__
+/// Instructions per nanosecond that wait for nothing: half of them on integers, half on vectors.
+void peak_of_instructions(benchmark::State& state) {
+  constexpr int kInstructions = 6 * 500;
+  std::uint64_t a = 0, b = 0, c = 0;
+  for (auto _ : state) {
+    asm volatile(
+        ".rept 500\n"
+        "add $1, %0\n paddd %%xmm6, %%xmm0\n add $1, %1\n paddd %%xmm6, %%xmm1\n add $1, %2\n paddd %%xmm6, %%xmm2\n"
+        ".endr\n"
+        : "+r"(a), "+r"(b), "+r"(c)
+        :
+        : "xmm0", "xmm1", "xmm2", "xmm6", "cc");
+  }
+  state.counters["per_ns"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * kInstructions * 1e-9, benchmark::Counter::kIsRate);
 }
+#endif
 
-template <class Real>
-void kick_and_drift_pass(benchmark::State& state, const std::string& target) {
-  use_vector_target(target);
-  Scene<Real> scene;
-  for (auto _ : state) benchmark::DoNotOptimize(kick_and_drift(scene.lanes, scene.step, 0, scene.lanes.group.size()));
-  per_sphere(state);
-  use_vector_target("");
-}
-
-template <class Real>
-void pick_near_pass(benchmark::State& state, const std::string& target) {
-  use_vector_target(target);
-  Scene<Real> scene;
-  for (auto _ : state) pick_near(scene.lanes, scene.step.edge, 0, scene.lanes.group.size());
-  per_sphere(state);
-  use_vector_target("");
-}
-
-template <class Real>
-void arrangement(benchmark::State& state, const std::string& target) {
-  use_vector_target(target);
-  Scene<Real> scene;
-  for (auto _ : state) arrange(scene.lanes, scene.step.edge, scene.skin, scene.near_skin, scene.team);
-  per_sphere(state);
-  use_vector_target("");
-}
-
-template <class Real>
-void register_all(const std::string& precision, const std::string& target) {
-  const auto add = [&](const std::string& name, auto function) {
-    benchmark::RegisterBenchmark((name + "/" + precision + "/" + target).c_str(), [=](benchmark::State& s) { function(s, target); });
-  };
-  add("force_and_kick", force_and_kick_pass<Real>);
-  add("kick_and_drift", kick_and_drift_pass<Real>);
-  add("pick_near", pick_near_pass<Real>);
-  add("arrange", arrangement<Real>);
+/// Each kernel once, after a first call that fills its tables, under a name that says how many spheres it went over.
+void count_instructions() {
+  for (const Kernel& kernel : all_kernels()) {
+    const std::function<void()> pass = kernel.prepared();
+    pass();
+    CALLGRIND_START_INSTRUMENTATION;
+    CALLGRIND_ZERO_STATS;
+    pass();
+    CALLGRIND_STOP_INSTRUMENTATION;
+    CALLGRIND_DUMP_STATS_AT(fmt::format("{} {}", kernel.name, kSpheres).c_str());
+    use_vector_target("");
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  benchmark::RegisterBenchmark("clock", clock_rate);
-  for (const std::string& target : vector_targets()) {
-    register_all<float>("mixed", target);
-    register_all<double>("double", target);
+  if (argc == 2 && std::string_view(argv[1]) == "--count") {
+    count_instructions();
+    return 0;
   }
+  benchmark::RegisterBenchmark("clock", clock_rate);
+#ifdef __x86_64__
+  benchmark::RegisterBenchmark("peak", peak_of_instructions);
+#endif
+  for (const Kernel& kernel : all_kernels())
+    benchmark::RegisterBenchmark(kernel.name.c_str(), [kernel](benchmark::State& state) { run_kernel(state, kernel); });
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -136,7 +136,7 @@ TEST(ReportFigure, PackedNumbersKeepFiveDigitsOfTheirRange) {
   const std::vector<double> values{-3, 7.25, 1e-9, 2, INFINITY, 5};
   const std::vector<double> back = unpacked(packed_numbers(values, false));
   ASSERT_EQ(back.size(), values.size());
-  for (const std::size_t i : {0, 1, 2, 3, 5}) EXPECT_NEAR(back[i], values[i], 0.51 * 10.25 / 262142) << i;
+  for (const std::size_t i : {0u, 1u, 2u, 3u, 5u}) EXPECT_NEAR(back[i], values[i], 0.51 * 10.25 / 262142) << i;
   EXPECT_TRUE(std::isnan(back[4]));
   const std::vector<double> logarithms = unpacked(packed_numbers({1e-9, 0, 1e3, -1}, true));
   EXPECT_NEAR(std::exp(logarithms[0]), 1e-9, 1e-13);

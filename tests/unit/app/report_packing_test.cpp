@@ -44,8 +44,8 @@ TEST(PackingDrawing, ChainsAreAsWideAsTheirForce) {
 
 TEST(PackingDrawing, TheCaptionSaysHowManyMoreContactsBearOnTheCompressedAxis) {
   dem::ShearPictures all = pictures();
-  for (const std::size_t bin : {7, 8, 9, 10}) all.after.count[bin] = 1.5;
-  for (const std::size_t bin : {0, 1, 16, 17}) all.after.force[bin] = 0.5;
+  for (const std::size_t bin : {7u, 8u, 9u, 10u}) all.after.count[bin] = 1.5;
+  for (const std::size_t bin : {0u, 1u, 16u, 17u}) all.after.force[bin] = 0.5;
   all.note = "Said beneath.";
   const Drawing drawing = packing_drawing(all);
   const std::string caption = to_plain(drawing.caption);

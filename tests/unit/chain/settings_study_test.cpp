@@ -80,7 +80,7 @@ TEST(SettingsStudy, GivenPackingsShareTheirChance) {
       study_of("dem", "", Packings::given, {},
                {outcome("reference", 9, 0, 0, seeds), outcome("base", 2, 0.06, 0.02, seeds), coarse, silent}, 1);
   const double of_a = std::sqrt((0.0004 + 0.0016 + 0.0016) / 3), of_b = std::sqrt((0.0004 + 0.0016) / 2);
-  for (const std::size_t i : {1, 2}) {
+  for (const std::size_t i : {1u, 2u}) {
     EXPECT_NEAR(study.results[i].errors[0].chance, of_a, 1e-14);
     EXPECT_NEAR(study.results[i].errors[1].chance, of_b, 1e-14);
     EXPECT_NEAR(study.results[i].error, 0.06 * std::sqrt((1 / (of_a * of_a) + 1 / (of_b * of_b)) / 2), 1e-12);

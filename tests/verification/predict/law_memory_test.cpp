@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "predict/predict.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 
 namespace grainlaw::predict {
