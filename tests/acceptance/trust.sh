@@ -2,7 +2,7 @@
 # tests/acceptance/trust.sh [--quick]: what a stranger may rely on, one line each:
 #   NAME VALUE BOUND ok|short          exit 0 only if none is short
 # What was lost or overwritten once; calls of the system that fail and kills all along the chain; digits over threads and builds;
-# stress against the energy and what is conserved; the suites as tests/full.sh left them. --quick: few faults and kills, no mutants.
+# stress against the energy and what is conserved; the chain's time line; the suites as tests/full.sh left them. --quick: few faults and kills, no mutants.
 set -euo pipefail
 
 # shellcheck source=tests/acceptance/setup.sh
@@ -78,6 +78,20 @@ conserved() {
     END { print (b > 0 ? a / b : "missing") }' "$out/conserved.txt")" ">=1.8"
 }
 
+# The chain's time line: seconds of its runs by kind, what is left for planning, fit and files, and how busy its threads were.
+time_line() {
+  local folder=$out/time-line kind TIMEFORMAT='%R %U %S'
+  rm -rf "$folder"
+  { time $bin/grainlaw calibrate examples/quickstart/spec.json -o "$folder" --threads 2 --quiet >/dev/null 2>&1; } 2>"$out/time-line.txt" ||
+    true # what it lacks is missing below
+  for kind in preparation test; do
+    figure "time_line.$kind.seconds" "$(jq -s --arg kind $kind '[.[] | select(.kind == $kind) | .cost.seconds] | add // "missing"' \
+      "$folder"/runs/*/run.json)" stated
+  done
+  figure time_line.wall.seconds "$(cut -d ' ' -f 1 "$out/time-line.txt")" stated
+  figure time_line.threads_busy_percent "$(awk '{ print 100 * ($2 + $3) / (2 * $1) }' "$out/time-line.txt")" ">=80"
+}
+
 suites() {
   local stage
   for stage in release clang assertions asan-ubsan tsan valgrind fuzz; do
@@ -95,6 +109,7 @@ faults
 digits
 figures_of_tests $bin/verification_dem '*.D7*' D7.random D7.relaxed
 conserved
+time_line
 suites
 [[ $quick == yes ]] || mutants
 finish_figures
