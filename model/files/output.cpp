@@ -191,6 +191,7 @@ bool is_safe_name(std::string_view name) {
 }
 
 void make_output_folder(const fs::path& root) {
+  if (root == "-") throw InvalidInput("-: standard output is no folder; give another -o, ./- for one of that name");
   std::error_code error;
   const fs::file_status status = fs::status(root, error);
   if (fs::exists(status) && !fs::is_directory(status)) {

@@ -43,7 +43,7 @@ void remove_leftovers(const std::filesystem::path& folder);
 bool is_safe_name(std::string_view name);
 
 /// Creates `root` (and its parents) when absent and removes the leftovers in it. Throws InvalidInput when it is no
-/// folder, Error when it cannot be made.
+/// folder or "-", Error when it cannot be made.
 void make_output_folder(const std::filesystem::path& root);
 
 /// Likewise root/name, which it returns; `name` must be safe. Throws InvalidInput for a link or a file there.

@@ -48,6 +48,7 @@ TEST_F(Files, KeepOutputInItsFolder) {
   put("out/file", "");
   EXPECT_NE(refusal([&] { make_subfolder(folder_ / "out", "file"); }).find("is a file"), std::string::npos);
   EXPECT_NE(refusal([&] { make_output_folder(folder_ / "out" / "file"); }).find("is not a folder"), std::string::npos);
+  EXPECT_NE(refusal([&] { make_output_folder("-"); }).find("standard output"), std::string::npos);
   EXPECT_TRUE(fs::is_empty(folder_ / "elsewhere"));
   EXPECT_EQ(make_subfolder(folder_ / "out", "dataset"), folder_ / "out" / "dataset");
   EXPECT_EQ(make_subfolder(folder_ / "out", "dataset"), folder_ / "out" / "dataset");
