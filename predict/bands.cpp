@@ -70,35 +70,28 @@ double BandMaker::scatter(double nu, Rehearsed quantity) const {
                                         : scatter.F_par;
 }
 
-void add_bands(const CalibratedLaw& law, const std::vector<StraightSegment>& path, Prediction& prediction) {
-  if (prediction.slopes.empty()) return;
+Prediction predict_with_bands(Rung rung, const CalibratedLaw& law, const std::vector<StraightSegment>& segments,
+                              const LawState<double>& start, bool start_from_law,
+                              const std::vector<OutputPoint>& points, const RunControl& control) {
   const BandMaker bands(law);
-  const Spokesmen spokesmen = spokesmen_for(path, law.rehearsals);
+  const Spokesmen spokesmen = spokesmen_for(segments, law.rehearsals);
   std::array<LawError, 3> errors;
   for (const Rehearsed quantity : kValues<Rehearsed>)
-    errors[static_cast<std::size_t>(quantity)] = law_error(spokesmen, prediction.model, quantity);
+    errors[static_cast<std::size_t>(quantity)] = law_error(spokesmen, rung, quantity);
   const double of_scatter = law.scatter.degrees_of_freedom > 0 ? student_95(law.scatter.degrees_of_freedom)
                                                                : std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < prediction.slopes.size(); ++i) {
-    PredictedRow& row = prediction.rows[i];
+  const auto set_bands = [&](PredictedRow& row, const std::vector<RowSlope>& slopes) {
     const ErrorUnits units = error_units(law.parameters, row.nu);
     for (const Banded& banded : kBanded) {
       const LawError& error = errors[static_cast<std::size_t>(banded.error)];
-      Variance variance = bands.of_law(prediction.slopes[i], banded.slope);
+      Variance variance = bands.of_law(slopes, banded.slope);
       variance = widened(variance, std::pow(units.of(banded.error) * error.tau, 2), error.degrees_of_freedom);
       row.mean.*banded.band = half_width(variance);
       row.single.*banded.band = std::hypot(row.mean.*banded.band, of_scatter * bands.scatter(row.nu, banded.error));
     }
-  }
-}
-
-Prediction predict_with_bands(Rung rung, const CalibratedLaw& law, const std::vector<StraightSegment>& segments,
-                              const LawState<double>& start, bool start_from_law,
-                              const std::vector<OutputPoint>& points, const RunControl& control) {
-  Prediction prediction = predict(rung, law.parameters, law.coupling, segments, start, points, {}, law.range, control,
-                                  {uncertain_parameters(law), start_from_law});
-  add_bands(law, segments, prediction);
-  return prediction;
+  };
+  return predict(rung, law.parameters, law.coupling, segments, start, points, {}, law.range, control,
+                 {uncertain_parameters(law), start_from_law, set_bands});
 }
 
 }  // namespace grainlaw::predict

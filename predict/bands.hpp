@@ -40,12 +40,9 @@ class BandMaker {
   Eigen::VectorXd degrees_of_freedom_;  // positive, may be infinite
 };
 
-/// Sets the bands of all rows whose slopes are known, by the errors of `law` and its own error from the rehearsals that speak
-/// for `path`, where there are any. `prediction` was made along it by this law and with Sensitivity::parameters its
-/// uncertain_parameters(). Without scatter between packings there are no bands of a single run.
-void add_bands(const CalibratedLaw& law, const std::vector<StraightSegment>& path, Prediction& prediction);
-
-/// predict() by `law` and within its range, with bands. `start_from_law`: as in Sensitivity.
+/// predict() by `law` and within its range, with the bands of all rows whose slopes are known, by the errors of `law` and its own
+/// error from the rehearsals that speak for the path, where there are any. Without scatter between packings there are no bands of a
+/// single run. `start_from_law`: as in Sensitivity. No slopes are kept.
 Prediction predict_with_bands(Rung rung, const CalibratedLaw& law, const std::vector<StraightSegment>& segments,
                               const LawState<double>& start, bool start_from_law,
                               const std::vector<OutputPoint>& points, const RunControl& control);

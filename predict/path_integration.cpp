@@ -228,12 +228,12 @@ void PathIntegration::take_event() {
   turn();
 }
 
-PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
-                             const std::vector<StraightSegment>& segments, const PathStart& start,
-                             const std::vector<OutputPoint>& points, const Tolerances& tolerances,
-                             const RunControl& control) {
+WalkedPath walk_integrated(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                           const std::vector<StraightSegment>& segments, const PathStart& start,
+                           const std::vector<OutputPoint>& points, const Tolerances& tolerances,
+                           const RunControl& control, const PathVisitor& visit) {
   PathIntegration integration(parameters, rung, coupling, start, tolerances);
-  PathStates out = walk(integration, segments, points, control);
+  WalkedPath out = walk(integration, segments, points, control, visit);
   out.statistics = integration.statistics();
   return out;
 }

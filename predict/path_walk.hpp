@@ -3,6 +3,7 @@
 // before and derives what rows report after.
 
 #include <chrono>
+#include <functional>
 
 #include "model/vocabulary/error.hpp"
 #include "predict/predict.hpp"
@@ -17,9 +18,11 @@ struct PathStart {
   std::vector<LawState<double>> slopes;
 };
 
-struct PathStates {
-  std::vector<LawState<double>> states;               ///< one for each point, in their order; zero while unjammed
-  std::vector<std::vector<LawState<double>>> slopes;  ///< [point][k] as in Prediction; none when none is asked for
+/// Called at each point in their order. `state`: zero while unjammed; `slopes`: [k] as in Prediction, none when none is asked for.
+using PathVisitor = std::function<void(const LawState<double>& state, const std::vector<LawState<double>>& slopes)>;
+
+/// What is known of a path at its end.
+struct WalkedPath {
   std::vector<PathEvent> events;
   SolverStatistics statistics;  ///< without `seconds`
 };
@@ -30,35 +33,32 @@ struct PathStates {
 ///   state(), slopes()  are those there; slopes none when none is asked for
 ///   events()           all so far
 template <class Follower>
-PathStates walk(Follower& follower, const std::vector<StraightSegment>& segments,
-                const std::vector<OutputPoint>& points, const RunControl& control) {
-  PathStates out;
-  out.states.reserve(points.size());
+WalkedPath walk(Follower& follower, const std::vector<StraightSegment>& segments,
+                const std::vector<OutputPoint>& points, const RunControl& control, const PathVisitor& visit) {
   std::size_t next = 0;
   for (std::size_t k = 0; k < segments.size() && next < points.size(); ++k) {
     follower.enter(segments[k], static_cast<int>(k));
     for (; next < points.size() && points[next].segment == static_cast<int>(k); ++next) {
       if (control.stop.stop_requested()) throw Interrupted("the prediction was interrupted");
       follower.advance(points[next].e);
-      out.states.push_back(follower.state());
-      if (auto slopes = follower.slopes(); !slopes.empty()) out.slopes.push_back(std::move(slopes));
+      visit(follower.state(), follower.slopes());
     }
     if (next < points.size()) follower.advance(segments[k].length);
   }
-  out.events = follower.events();
-  return out;
+  return {follower.events(), {}};
 }
 
 /// Eqs. (17), (18) from each corner on, P by Eq. (14). An isotropic segment keeps sigma'/P and F'. Unjams and jams at
 /// nu_c, where it begins anew.
-PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
-                          const PathStart& start, const std::vector<OutputPoint>& points, const RunControl& control);
+WalkedPath walk_reduced(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
+                        const PathStart& start, const std::vector<OutputPoint>& points, const RunControl& control,
+                        const PathVisitor& visit);
 
 /// Rung::evolution or Rung::memory, with the events of path_integration.hpp.
-PathStates integrated_states(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
-                             const std::vector<StraightSegment>& segments, const PathStart& start,
-                             const std::vector<OutputPoint>& points, const Tolerances& tolerances,
-                             const RunControl& control);
+WalkedPath walk_integrated(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                           const std::vector<StraightSegment>& segments, const PathStart& start,
+                           const std::vector<OutputPoint>& points, const Tolerances& tolerances,
+                           const RunControl& control, const PathVisitor& visit);
 
 /// NaN throughout.
 LawState<double> unknown_slope();

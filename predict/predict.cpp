@@ -210,23 +210,17 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
 
   const auto before = std::chrono::steady_clock::now();
   const PathStart from = start_of(parameters, segments.front().nu_start, start, sensitivity);
-  const PathStates path = model == Rung::reduced ? reduced_states(parameters, segments, from, points, control)
-                                                 : integrated_states(parameters, model, coupling, segments, from,
-                                                                     points, tolerances, control);
 
   Prediction prediction;
   prediction.model = model;
-  prediction.events = path.events;
-  prediction.statistics = path.statistics;
   const Deviator<double> N = shear_direction(segments);
-  prediction.rows.reserve(path.states.size());
+  prediction.rows.reserve(points.size());
   std::size_t k = 0;
   double path_before = 0;  // shear path at the start of segment k
-  for (std::size_t i = 0; i < path.states.size(); ++i) {
-    const auto& [index, e] = points[i];
+  const auto add_row = [&](const LawState<double>& state, const std::vector<LawState<double>>& state_slopes) {
+    const auto& [index, e] = points[prediction.rows.size()];
     for (; k < static_cast<std::size_t>(index); ++k) path_before += segments[k].eps_dev_rate() * segments[k].length;
     const StraightSegment& segment = segments[k];
-    const LawState<double>& state = path.states[i];
     if (!is_defined(state, model) || !(state.P >= 0)) {
       throw Error(
           fmt::format("segments[{}] at e = {:.9g}: the {} law gives a state that is not finite or P* < 0; "
@@ -235,10 +229,20 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
     }
     const PathPlace place{index, segment.strain(e), path_before + segment.eps_dev_rate() * e, segment.nu(e)};
     prediction.rows.push_back(row_of(place, state, N));
-    if (path.slopes.empty()) continue;
-    std::vector<RowSlope>& slopes = prediction.slopes.emplace_back();
-    for (const LawState<double>& slope : path.slopes[i]) slopes.push_back(slope_of(state, slope, N));
-  }
+    if (state_slopes.empty()) return;
+    std::vector<RowSlope> slopes;
+    slopes.reserve(state_slopes.size());
+    for (const LawState<double>& slope : state_slopes) slopes.push_back(slope_of(state, slope, N));
+    if (sensitivity.use)
+      sensitivity.use(prediction.rows.back(), slopes);
+    else
+      prediction.slopes.push_back(std::move(slopes));
+  };
+  const WalkedPath path = model == Rung::reduced ? walk_reduced(parameters, segments, from, points, control, add_row)
+                                                 : walk_integrated(parameters, model, coupling, segments, from, points,
+                                                                   tolerances, control, add_row);
+  prediction.events = path.events;
+  prediction.statistics = path.statistics;
   conclude(prediction, range, before);
   return prediction;
 }

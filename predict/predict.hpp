@@ -8,6 +8,7 @@
 // Dimensionless (*) throughout; strain tension positive, stress and fabric compression positive. The deviators are the
 // 5-vectors of model/vocabulary/tensor.hpp.
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -138,12 +139,6 @@ constexpr auto fields_of(std::type_identity<PathEvent>) {
 }
 static_assert(tells_every_member<PathEvent>());
 
-/// Whose influence on the rows is wanted; nobody's by default, which costs nothing.
-struct Sensitivity {
-  std::vector<std::size_t> parameters;  ///< indices in parameter_table()
-  bool start_from_law = true;           ///< the start is state_from_law() and moves with them; false: it was measured
-};
-
 /// d(row)/d(parameter) at the row's strain, per unit of the parameter. NaN from where the state unjams on: that place moves
 /// with the parameters.
 struct RowSlope {
@@ -151,10 +146,19 @@ struct RowSlope {
   double s_dev = 0, s_par = 0, F_dev = 0, F_par = 0;  ///< s_par, F_par NaN on a path without shear
 };
 
+/// Whose influence on the rows is wanted; nobody's by default, which costs nothing.
+struct Sensitivity {
+  std::vector<std::size_t> parameters;  ///< indices in parameter_table()
+  bool start_from_law = true;           ///< the start is state_from_law() and moves with them; false: it was measured
+  /// What becomes of the slopes of a row, one to each parameter, as soon as it is there; none: Prediction keeps them, some
+  /// 7 kB a row.
+  std::function<void(PredictedRow& row, const std::vector<RowSlope>& slopes)> use = {};
+};
+
 struct Prediction {
   Rung model = Rung::evolution;
   std::vector<PredictedRow> rows;             ///< one for each point
-  std::vector<std::vector<RowSlope>> slopes;  ///< [row][k] to the k-th parameter asked for; none when none is
+  std::vector<std::vector<RowSlope>> slopes;  ///< [row][k] to the k-th parameter asked for, where they are kept
   SolverStatistics statistics;
   std::vector<PathEvent> events;      ///< in their order
   bool unjammed = false;              ///< P, a principal stress or nu - nu_c fell to zero: the first such event

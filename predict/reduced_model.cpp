@@ -35,7 +35,7 @@ Deviator<double> saturating_tensor(double limit, const Deviator<double>& start, 
   return end - (end - left) * std::exp(-rate * (direction.de * e));
 }
 
-/// The closed form as walk() follows it. From where the state unjams or jams on, it begins anew from nothing.
+/// The closed form along the path. From where the state unjams or jams on, it begins anew from nothing.
 class ReducedForm {
  public:
   /// The parameters must outlive the object.
@@ -65,7 +65,6 @@ class ReducedForm {
     return {P, now.q * P, now.F};
   }
 
-  static std::vector<LawState<double>> slopes() { return {}; }
   const std::vector<PathEvent>& events() const { return events_; }
 
  private:
@@ -100,26 +99,57 @@ class ReducedForm {
   std::vector<PathEvent> events_;
 };
 
+/// The closed form with those of moved parameters beside it, whose differences are the slopes.
+class ReducedForms {
+ public:
+  /// `parameters` and `start` must outlive the object.
+  ReducedForms(const LawParameters<double>& parameters, const PathStart& start)
+      : start_(start), form_(parameters, start.state) {
+    for (std::size_t k = 0; k < start.steps.size(); ++k) {
+      const auto& [magnitude, h, above, below] = start.steps[k];
+      above_.emplace_back(above, moved(start.state, h, start.slopes[k]));
+      below_.emplace_back(below, moved(start.state, -h, start.slopes[k]));
+    }
+  }
+
+  void enter(const StraightSegment& segment, int index) {
+    for_each([&](ReducedForm& form) { form.enter(segment, index); });
+  }
+  void advance(double e) {
+    for_each([&](ReducedForm& form) { form.advance(e); });
+  }
+
+  LawState<double> state() const { return form_.state(); }
+  const std::vector<PathEvent>& events() const { return form_.events(); }
+
+  std::vector<LawState<double>> slopes() {
+    known_ = known_ && form_.state().P > 0;
+    std::vector<LawState<double>> slopes(start_.steps.size(), unknown_slope());
+    for (std::size_t k = 0; k < slopes.size() && known_; ++k)
+      slopes[k] = moved({}, 1 / (2 * start_.steps[k].h), moved(above_[k].state(), -1, below_[k].state()));
+    return slopes;
+  }
+
+ private:
+  template <class Move>
+  void for_each(const Move& move) {
+    move(form_);
+    for (auto* forms : {&above_, &below_}) std::for_each(forms->begin(), forms->end(), move);
+  }
+
+  const PathStart& start_;
+  ReducedForm form_;
+  std::vector<ReducedForm> above_, below_;
+  bool known_ = true;  // until the first point where it is unjammed
+};
+
 }  // namespace
 
-PathStates reduced_states(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
-                          const PathStart& start, const std::vector<OutputPoint>& points, const RunControl& control) {
-  const auto states_of = [&](const LawParameters<double>& p, const LawState<double>& from) {
-    ReducedForm form(p, from);
-    return walk(form, segments, points, control);
-  };
-  PathStates out = states_of(parameters, start.state);
-  if (start.steps.empty()) return out;
-  const auto unjammed = std::ranges::find_if(out.states, [](const LawState<double>& state) { return !(state.P > 0); });
-  out.slopes.assign(points.size(), std::vector(start.steps.size(), unknown_slope()));
-  for (std::size_t k = 0; k < start.steps.size(); ++k) {
-    const auto& [magnitude, h, above, below] = start.steps[k];
-    const auto up = states_of(above, moved(start.state, h, start.slopes[k])).states;
-    const auto down = states_of(below, moved(start.state, -h, start.slopes[k])).states;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(unjammed - out.states.begin()); ++i)
-      out.slopes[i][k] = moved({}, 1 / (2 * h), moved(up[i], -1, down[i]));
-  }
-  return out;
+WalkedPath walk_reduced(const LawParameters<double>& parameters, const std::vector<StraightSegment>& segments,
+                        const PathStart& start, const std::vector<OutputPoint>& points, const RunControl& control,
+                        const PathVisitor& visit) {
+  ReducedForms forms(parameters, start);
+  return walk(forms, segments, points, control, visit);
 }
 
 }  // namespace grainlaw::predict

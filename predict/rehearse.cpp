@@ -56,11 +56,17 @@ RehearsedRows rehearse(const CalibratedLaw& law, Rung rung, const RehearsalRuns&
                    sensitivity);
   };
   // each run at its own strains; the slopes, which take most of the time, at the first one's
-  const Prediction prediction = along(first, {uncertain_parameters(law), true});
+  const BandMaker bands(law);
+  std::vector<std::array<Variance, 3>> known;  // of the rows
+  const auto judge = [&](const PredictedRow&, const std::vector<RowSlope>& slopes) {
+    auto& variances = known.emplace_back();
+    for (const Rehearsed quantity : kValues<Rehearsed>)
+      variances[static_cast<std::size_t>(quantity)] = bands.of_law(slopes, quantity);
+  };
+  const Prediction prediction = along(first, {uncertain_parameters(law), true, judge});
   std::vector<Prediction> of_runs{prediction};
   for (std::size_t r = 1; r < runs.runs.size(); ++r) of_runs.push_back(along(runs.runs[r], {}));
   const double from = counts_from(segments);
-  const BandMaker bands(law);
   RehearsedRows rows;
   for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
     const PredictedRow& row = prediction.rows[i];
@@ -71,9 +77,9 @@ RehearsedRows rehearse(const CalibratedLaw& law, Rung rung, const RehearsalRuns&
       const auto q = static_cast<std::size_t>(quantity);
       RehearsedValue& value = values[q];
       value.weight = units.of(quantity);
-      const Variance known = prediction.slopes.empty() ? Variance{} : bands.of_law(prediction.slopes[i], quantity);
-      value.variance = known.value;
-      value.degrees_of_freedom = known.degrees_of_freedom;
+      const Variance of_law = known.empty() ? Variance{} : known[i][q];
+      value.variance = of_law.value;
+      value.degrees_of_freedom = of_law.degrees_of_freedom;
       const double scatter = bands.scatter(row.nu, quantity);
       value.mean_variance = std::isfinite(scatter) ? scatter * scatter / static_cast<double>(runs.runs.size()) : 0;
       for (std::size_t r = 0; r < runs.runs.size(); ++r) {

@@ -86,10 +86,15 @@ class Follower {
     for (std::size_t k = 0; k < segments.size(); ++k) ends.push_back({static_cast<int>(k), segments[k].length});
     const PathStart from{start, {}, {}};
     const Tolerances tolerances{accuracy_, 1e-4 * accuracy_};
-    return (rung_ == Rung::reduced
-                ? reduced_states(parameters_, segments, from, ends, control)
-                : integrated_states(parameters_, rung_, coupling_, segments, from, ends, tolerances, control))
-        .states;
+    std::vector<LawState<double>> states;
+    const auto keep = [&](const LawState<double>& state, const std::vector<LawState<double>>&) {
+      states.push_back(state);
+    };
+    if (rung_ == Rung::reduced)
+      walk_reduced(parameters_, segments, from, ends, control, keep);
+    else
+      walk_integrated(parameters_, rung_, coupling_, segments, from, ends, tolerances, control, keep);
+    return states;
   }
 
  private:

@@ -60,10 +60,9 @@ TEST(LawQuantities, PredictionsHaveTheErrorOfTheirBands) {
   ASSERT_EQ(richest_rung(c.law), Rung::evolution);
   const auto quantities = predicted_quantities(c, path, Rung::evolution, 4, {});
   const auto segments = resolve(path);
-  predict::Prediction prediction = predict::predict(
-      Rung::evolution, c.law.parameters, c.law.coupling, segments, predict::state_from_law(c.law.parameters, path.nu),
-      predict::uniform_points(segments, 100), {}, {}, {}, {uncertain_parameters(c.law), true});
-  predict::add_bands(c.law, segments, prediction);
+  const predict::Prediction prediction =
+      predict::predict_with_bands(Rung::evolution, c.law, segments, predict::state_from_law(c.law.parameters, path.nu),
+                                  true, predict::uniform_points(segments, 100), {});
   ASSERT_EQ(quantities.size(), 3u);
   for (Eigen::Index i = 1; i < quantities[0].values.size(); ++i) {
     const predict::PredictedRow& row = prediction.rows[static_cast<std::size_t>(i)];
