@@ -68,22 +68,19 @@ floor() {
   figure force_pass.cycles_of_16_pairs.floor 42 stated
 }
 
-# Each kernel beside its ceiling: the instructions of one call, counted under callgrind, at the rate of instructions that wait for
-# nothing. The widest vectors that callgrind knows are AVX2's.
+# Each kernel beside its ceiling: the instructions of one call, counted step by step, at the rate of instructions that wait for nothing.
 ceilings() {
-  local json=$out/ceilings.json name count
-  rm -f "$out"/count.*
-  valgrind --tool=callgrind --instr-atstart=no --callgrind-out-file="$out/count" $bin/bench_kernels --count 2>"$out/count.err" ||
-    tail -3 "$out/count.err" >&2
+  local json=$out/ceilings.json name count peak ns
+  $bin/bench_kernels --count >"$out/instructions.txt"
   taskset -c 0 $bin/bench_kernels --benchmark_filter='^peak$|/AVX2$|^averages$' --benchmark_format=json >"$json"
+  of() { jq -r --arg name "$1" --arg counter "$2" '[.benchmarks[] | select(.name == $name) | .[$counter]] | first // "missing"' "$json"; }
+  peak=$(of peak per_ns)
+  figure peak.instructions_per_ns "$peak" stated
   for name in {force_and_kick,kick_and_drift,pick_near,arrange}/{mixed,double}/AVX2 averages; do
-    count=$(awk -v name="$name" '$1 == "desc:" && $2 == "Trigger:" { found = $5 == name; spheres = $6 }
-      $1 == "totals:" && found { print $2 / spheres }' "$out"/count.*)
-    jq -r --arg name "$name" --arg count "${count:-missing}" '(.benchmarks[] | select(.name == "peak") | .per_ns) as $peak
-      | .benchmarks[] | select(.name == $name) | .["ns/sphere"] as $ns | ($count | tonumber? // null) as $n
-      | "instructions \($n // "missing") ceiling \(if $n then $n / $peak else "missing" end) reached \(
-         if $n then $n / $peak / $ns else "missing" end)"' "$json" | xargs -n 2 |
-      while read -r what value; do figure "$what.${name//\//.}" "$value" stated; done
+    count=$(value_of "$name" "$out/instructions.txt") ns=$(of "$name" ns/sphere)
+    figure "ceiling.ns.${name//\//.}" "$(awk -v n="$count" -v peak="$peak" 'BEGIN { print (n > 0 && peak > 0 ? n / peak : "missing") }')" stated
+    figure "reached.${name//\//.}" "$(awk -v n="$count" -v peak="$peak" -v ns="$ns" \
+      'BEGIN { print (n > 0 && peak > 0 && ns > 0 ? n / peak / ns : "missing") }')" stated
   done
 }
 

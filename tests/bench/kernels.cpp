@@ -1,12 +1,15 @@
 // The passes of one step, the list and a row of averages by themselves, in ns per sphere, for every kind of vector instructions
 // (Google Benchmark), and what the processor does at most:
 //   bench_kernels
-//   valgrind --tool=callgrind --instr-atstart=no --callgrind-out-file=FILE bench_kernels --count
-// --count: each of them once under callgrind, which leaves the instructions of each in a FILE.N of its own.
+//   bench_kernels --count        instructions per sphere of each with AVX2's vectors, by single steps (some minutes)
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,14 +17,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#if __has_include(<valgrind/callgrind.h>)
-#include <valgrind/callgrind.h>
-#else
-#define CALLGRIND_START_INSTRUMENTATION
-#define CALLGRIND_STOP_INSTRUMENTATION
-#define CALLGRIND_ZERO_STATS
-#define CALLGRIND_DUMP_STATS_AT(name)
-#endif
 
 #include "dem/engine/averages.hpp"
 #include "dem/engine/lanes/lane_list.hpp"
@@ -35,17 +30,17 @@ namespace {
 
 using namespace grainlaw::dem;
 
-constexpr std::size_t kSpheres = 4096;
+std::size_t spheres = 4096;
 
 /// A relaxed packing at nu = 0.74, with what lanes need to know.
 const State& packing() {
   static const State state = [] {
     scene::Draw draw(1);
-    State s = scene::random_state(kSpheres, 3, 0.74, scene::cubic(1), draw);
+    State s = scene::random_state(spheres, 3, 0.74, scene::cubic(1), draw);
     round_radii(s.packing);
     relax(s, {}, {}, {});
     s.ref_x = s.packing.sx, s.ref_y = s.packing.sy, s.ref_z = s.packing.sz, s.ref_H = s.packing.H;
-    for (auto* a : {&s.ax, &s.ay, &s.az}) a->assign(kSpheres, 0.0);
+    for (auto* a : {&s.ax, &s.ay, &s.az}) a->assign(spheres, 0.0);
     return s;
   }();
   return state;
@@ -74,7 +69,8 @@ struct Scene {
     step.viscosity = s.material.contact_viscosity / (unit.mass / unit.time);
     step.allowed = skin;
     step.near_stretch = skin / near_skin;
-    for (SphereGroup<Real>& group : lanes.group) std::fill(std::begin(group.near_skin), std::end(group.near_skin), static_cast<Real>(near_skin / 2));
+    for (SphereGroup<Real>& group : lanes.group)
+      std::fill(std::begin(group.near_skin), std::end(group.near_skin), static_cast<Real>(near_skin / 2));
     write_rows(lanes, step, 0, lanes.group.size());
     pick_near(lanes, step.edge, 0, lanes.group.size());
   }
@@ -84,7 +80,7 @@ struct Scene {
 struct Kernel {
   std::string name;
   std::function<std::function<void()>()> prepared;  ///< the call, ready to be repeated
-  std::function<double()> tiers;                    ///< per sphere, sixteen pairs each, of what was prepared last; may be empty
+  std::function<double()> tiers;  ///< per sphere, sixteen pairs each, of what was prepared last; may be empty
 };
 
 template <class Real>
@@ -99,16 +95,14 @@ std::vector<Kernel> kernels_of(const std::string& precision, const std::string& 
     };
     const auto tiers = [=] {
       const auto& count = (*scene)->lanes.near_count;
-      return std::accumulate(count.begin(), count.end(), 0.0) / kSpheres;
+      return std::accumulate(count.begin(), count.end(), 0.0) / static_cast<double>(spheres);
     };
     kernels.push_back({fmt::format("{}/{}/{}", name, precision, target), prepared, tiers});
   };
-  add("force_and_kick", [](Scene<Real>& s) {
-    benchmark::DoNotOptimize(force_and_kick(s.lanes, s.step, 0, s.lanes.group.size()));
-  });
-  add("kick_and_drift", [](Scene<Real>& s) {
-    benchmark::DoNotOptimize(kick_and_drift(s.lanes, s.step, 0, s.lanes.group.size()));
-  });
+  add("force_and_kick",
+      [](Scene<Real>& s) { benchmark::DoNotOptimize(force_and_kick(s.lanes, s.step, 0, s.lanes.group.size())); });
+  add("kick_and_drift",
+      [](Scene<Real>& s) { benchmark::DoNotOptimize(kick_and_drift(s.lanes, s.step, 0, s.lanes.group.size())); });
   add("pick_near", [](Scene<Real>& s) { pick_near(s.lanes, s.step.edge, 0, s.lanes.group.size()); });
   add("arrange", [](Scene<Real>& s) { arrange(s.lanes, s.step.edge, s.skin, s.near_skin, s.team); });
   return kernels;
@@ -120,7 +114,7 @@ Kernel averages() {
           [] {
             const CellMotion still{packing().packing.H, Eigen::Matrix3d::Zero()};
             const auto sim = std::make_shared<Simulation>(packing(), EngineOptions{}, still);
-            return [sim, still] { benchmark::DoNotOptimize(observe(*sim, still, Deviator<double>::Zero())); };
+            return [sim, still] { benchmark::DoNotOptimize(observe(*sim, still, grainlaw::Deviator<double>::Zero())); };
           },
           {}};
 }
@@ -138,8 +132,9 @@ std::vector<Kernel> all_kernels() {
 void run_kernel(benchmark::State& state, const Kernel& kernel) {
   const std::function<void()> pass = kernel.prepared();
   for (auto _ : state) pass();
-  state.counters["ns/sphere"] = benchmark::Counter(static_cast<double>(state.iterations()) * kSpheres * 1e-9,
-                                                   benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["ns/sphere"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(spheres) * 1e-9,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
   if (kernel.tiers) state.counters["tiers/sphere"] = kernel.tiers();
   use_vector_target("");
 }
@@ -177,27 +172,42 @@ void peak_of_instructions(benchmark::State& state) {
 }
 #endif
 
-/// Each kernel once, after a first call that fills its tables, under a name that says how many spheres it went over.
-void count_instructions() {
+/// Of one call, which a child makes step by step.
+std::int64_t instructions_of(const std::function<void()>& pass) {
+  const pid_t child = fork();
+  if (child == 0) {
+    ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
+    std::raise(SIGSTOP);
+    pass();
+    _exit(0);
+  }
+  std::int64_t count = -1;  // the stop itself
+  int status = 0;
+  while (waitpid(child, &status, 0) == child && WIFSTOPPED(status)) {
+    ++count;
+    ptrace(PTRACE_SINGLESTEP, child, nullptr, nullptr);
+  }
+  return count;
+}
+
+int count_instructions() {
+  spheres = 1000;
   for (const Kernel& kernel : all_kernels()) {
+    if (kernel.tiers && !kernel.name.ends_with("/AVX2")) continue;
     const std::function<void()> pass = kernel.prepared();
-    pass();
-    CALLGRIND_START_INSTRUMENTATION;
-    CALLGRIND_ZERO_STATS;
-    pass();
-    CALLGRIND_STOP_INSTRUMENTATION;
-    CALLGRIND_DUMP_STATS_AT(fmt::format("{} {}", kernel.name, kSpheres).c_str());
+    pass();  // fills its tables
+    std::printf("%s %.0f\n", kernel.name.c_str(),
+                static_cast<double>(instructions_of(pass)) / static_cast<double>(spheres));
+    std::fflush(stdout);
     use_vector_target("");
   }
+  return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc == 2 && std::string_view(argv[1]) == "--count") {
-    count_instructions();
-    return 0;
-  }
+  if (argc == 2 && std::string_view(argv[1]) == "--count") return count_instructions();
   benchmark::RegisterBenchmark("clock", clock_rate);
 #ifdef __x86_64__
   benchmark::RegisterBenchmark("peak", peak_of_instructions);
