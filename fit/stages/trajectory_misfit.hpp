@@ -1,10 +1,10 @@
 #pragma once
 // model - data of one trajectory for values of some parameters, as the coupled fits of the rungs differentiate it.
 
-#include <functional>
 #include <vector>
 
 #include "fit/stages/trajectory.hpp"
+#include "fit/statistics/problem.hpp"
 
 namespace grainlaw::fit {
 
@@ -17,9 +17,13 @@ struct TrajectoryMisfit {
   Coupling coupling;
   double max_step;   ///< of the integration, deviatoric or volumetric strain [-]
   std::size_t axes;  ///< at most trajectory.axes.size()
+
+  /// `x`: one value for each of `index`; `misfit`: rows x (1 + 2 axes). False where the law is not defined.
+  template <class T>
+  bool operator()(const T* x, T* misfit) const;
 };
 
-/// `misfit` as ResidualBlock::evaluate: of rows x (1 + 2 axes); false where the law is not defined.
-std::function<bool(const double* x, double* misfit, double* jacobian)> differentiated(const TrajectoryMisfit& misfit);
+/// `misfit` with its derivatives.
+decltype(ResidualBlock::evaluate) differentiated(const TrajectoryMisfit& misfit);
 
 }  // namespace grainlaw::fit

@@ -62,7 +62,7 @@ bool evaluate(const std::vector<ResidualBlock>& blocks, const Eigen::VectorXd& x
               double* jacobian);
 
 /// Values and Jacobian of `functor(const T* x, T* misfit) -> bool` by forward differentiation. `Jet` is a dual number of
-/// Jet::DIMENSION partial derivatives: Jet(value, k), .a and .v. More `parameters` take more than one pass.
+/// Jet::DIMENSION partial derivatives: Jet(value), Jet(value, k), .a and .v. More `parameters` take more than one pass.
 template <class Jet, class Functor>
 auto differentiated(Functor functor, int parameters, int rows) {
   return [functor = std::move(functor), parameters, rows](const double* x, double* misfit, double* jacobian) {
