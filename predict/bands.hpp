@@ -42,7 +42,7 @@ class BandMaker {
 
 /// predict() by `law` and within its range, with the bands of all rows whose slopes are known, by the errors of `law` and its own
 /// error from the rehearsals that speak for the path, where there are any. Without scatter between packings there are no bands of a
-/// single run. `start_from_law`: as in Sensitivity. No slopes are kept.
+/// single run. `start_from_law`: as in Sensitivity.
 Prediction predict_with_bands(Rung rung, const CalibratedLaw& law, const std::vector<StraightSegment>& segments,
                               const LawState<double>& start, bool start_from_law,
                               const std::vector<OutputPoint>& points, const RunControl& control);

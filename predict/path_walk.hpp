@@ -18,7 +18,7 @@ struct PathStart {
   std::vector<LawState<double>> slopes;
 };
 
-/// Called at each point in their order. `state`: zero while unjammed; `slopes`: [k] as in Prediction, none when none is asked for.
+/// Called at each point in their order. `state`: zero while unjammed; `slopes`: to each parameter asked for.
 using PathVisitor = std::function<void(const LawState<double>& state, const std::vector<LawState<double>>& slopes)>;
 
 /// What is known of a path at its end.

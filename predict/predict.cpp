@@ -229,14 +229,11 @@ Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling
     }
     const PathPlace place{index, segment.strain(e), path_before + segment.eps_dev_rate() * e, segment.nu(e)};
     prediction.rows.push_back(row_of(place, state, N));
-    if (state_slopes.empty()) return;
+    if (state_slopes.empty() || !sensitivity.use) return;
     std::vector<RowSlope> slopes;
     slopes.reserve(state_slopes.size());
     for (const LawState<double>& slope : state_slopes) slopes.push_back(slope_of(state, slope, N));
-    if (sensitivity.use)
-      sensitivity.use(prediction.rows.back(), slopes);
-    else
-      prediction.slopes.push_back(std::move(slopes));
+    sensitivity.use(prediction.rows.back(), slopes);
   };
   const WalkedPath path = model == Rung::reduced ? walk_reduced(parameters, segments, from, points, control, add_row)
                                                  : walk_integrated(parameters, model, coupling, segments, from, points,

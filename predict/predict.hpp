@@ -150,15 +150,13 @@ struct RowSlope {
 struct Sensitivity {
   std::vector<std::size_t> parameters;  ///< indices in parameter_table()
   bool start_from_law = true;           ///< the start is state_from_law() and moves with them; false: it was measured
-  /// What becomes of the slopes of a row, one to each parameter, as soon as it is there; none: Prediction keeps them, some
-  /// 7 kB a row.
+  /// Called with each row, in order, and its slopes to the parameters. Nobody keeps them: on long paths they would fill the memory.
   std::function<void(PredictedRow& row, const std::vector<RowSlope>& slopes)> use = {};
 };
 
 struct Prediction {
   Rung model = Rung::evolution;
-  std::vector<PredictedRow> rows;             ///< one for each point
-  std::vector<std::vector<RowSlope>> slopes;  ///< [row][k] to the k-th parameter asked for, where they are kept
+  std::vector<PredictedRow> rows;  ///< one for each point
   SolverStatistics statistics;
   std::vector<PathEvent> events;      ///< in their order
   bool unjammed = false;              ///< P, a principal stress or nu - nu_c fell to zero: the first such event

@@ -1,5 +1,6 @@
 #include "chain/studies/law_quantities.hpp"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -105,6 +106,19 @@ StudyQuantity mean_of(const std::string& name, const Eigen::RowVectorXd& x) {
   return quantity;
 }
 
+/// Of a predicted row.
+struct Predicted {
+  const char* name;
+  double (*value)(const predict::PredictedRow&);
+  double (*slope)(const predict::RowSlope&);
+};
+constexpr std::array<Predicted, 3> kPredicted{{{"P_star", [](const predict::PredictedRow& row) { return row.state.P; },
+                                                [](const predict::RowSlope& slope) { return slope.state.P; }},
+                                               {"s_par", [](const predict::PredictedRow& row) { return row.s_par; },
+                                                [](const predict::RowSlope& slope) { return slope.s_par; }},
+                                               {"F_par", [](const predict::PredictedRow& row) { return row.F_par; },
+                                                [](const predict::RowSlope& slope) { return slope.F_par; }}}};
+
 }  // namespace
 
 std::vector<StudyQuantity> law_quantities(const fit::Calibration& calibration, const std::vector<double>& densities,
@@ -131,32 +145,31 @@ std::vector<StudyQuantity> predicted_quantities(const fit::Calibration& calibrat
   const std::vector<std::size_t> parameters = uncertain_parameters(calibration.law);
   const Eigen::MatrixXd influence = influence_of(calibration, parameters, packings);
   const auto segments = resolve(path);
+  const auto points = predict::uniform_points(segments, kStudyPoints);
+  std::vector<StudyQuantity> quantities;
+  for (const Predicted& of : kPredicted) {
+    const auto rows = static_cast<Eigen::Index>(points.size());
+    quantities.push_back({of.name, Eigen::VectorXd(rows), Eigen::MatrixXd::Zero(rows, influence.cols()), true});
+  }
+  Eigen::Index row = 0;
+  const auto add_influence = [&](const predict::PredictedRow&, const std::vector<predict::RowSlope>& slopes) {
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+      Eigen::RowVectorXd of_row(influence.rows());
+      for (std::size_t k = 0; k < slopes.size(); ++k)
+        of_row(static_cast<Eigen::Index>(k)) = kPredicted[q].slope(slopes[k]);
+      quantities[q].influence.row(row) = of_row * influence;
+    }
+    ++row;
+  };
   const predict::Prediction prediction =
       predict::predict(rung, calibration.law.parameters, calibration.law.coupling, segments,
-                       predict::state_from_law(calibration.law.parameters, path.nu),
-                       predict::uniform_points(segments, kStudyPoints), {}, {}, control, {parameters, true});
-  const auto along = [&](const char* name, auto value, auto slope) {
-    const auto rows = static_cast<Eigen::Index>(prediction.rows.size());
-    StudyQuantity quantity{name, Eigen::VectorXd(rows), Eigen::MatrixXd(rows, influence.cols()), true};
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      quantity.values(i) = value(prediction.rows[at]);
-      Eigen::RowVectorXd slopes(influence.rows());
-      for (Eigen::Index k = 0; k < slopes.size(); ++k)
-        slopes(k) = slope(prediction.slopes[at][static_cast<std::size_t>(k)]);
-      quantity.influence.row(i) = slopes * influence;
-    }
-    return quantity;
-  };
-  return {along(
-              "P_star", [](const predict::PredictedRow& row) { return row.state.P; },
-              [](const predict::RowSlope& slope) { return slope.state.P; }),
-          along(
-              "s_par", [](const predict::PredictedRow& row) { return row.s_par; },
-              [](const predict::RowSlope& slope) { return slope.s_par; }),
-          along(
-              "F_par", [](const predict::PredictedRow& row) { return row.F_par; },
-              [](const predict::RowSlope& slope) { return slope.F_par; })};
+                       predict::state_from_law(calibration.law.parameters, path.nu), points, {}, {}, control,
+                       {parameters, true, add_influence});
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    for (std::size_t i = 0; i < prediction.rows.size(); ++i)
+      quantities[q].values(static_cast<Eigen::Index>(i)) = kPredicted[q].value(prediction.rows[i]);
+  }
+  return quantities;
 }
 
 std::vector<StudyQuantity> packing_quantities(const Dataset& dataset, const std::vector<std::uint64_t>& seeds) {

@@ -56,6 +56,14 @@ std::vector<double> outputs(const RowSlope& slope) {
   return outputs(slope.state, slope.s_dev, slope.s_par, slope.F_dev, slope.F_par);
 }
 
+using Slopes = std::vector<std::vector<RowSlope>>;  // [row][k]
+
+/// Of all rows to `parameters`, into `slopes`.
+Sensitivity kept(Slopes& slopes, const std::vector<std::size_t>& parameters, bool start_from_law = true) {
+  return {parameters, start_from_law,
+          [&](const PredictedRow&, const std::vector<RowSlope>& of_row) { slopes.push_back(of_row); }};
+}
+
 struct Case {
   Rung rung;
   Coupling coupling;
@@ -79,7 +87,8 @@ Prediction run(const Case& c, const LawParameters<double>& p, const Sensitivity&
 /// below 0.01 (of P for stresses, of 0.1 for ratios and fabric) count as that.
 double farthest(const Case& c) {
   const LawParameters<double> p = law_with_memory();
-  const Prediction prediction = run(c, p, {all_parameters(), c.start_from_law});
+  Slopes slopes;
+  const Prediction prediction = run(c, p, kept(slopes, all_parameters(), c.start_from_law));
   double worst = 0;
   for (std::size_t k = 0; k < kParameterCount; ++k) {
     const bool density = std::string(parameter_table()[k].name).ends_with("nu_c");
@@ -102,7 +111,7 @@ double farthest(const Case& c) {
       double scale = 0.01 * typical / magnitude, off = 0;
       for (std::size_t i = 0; i < difference.size(); ++i) {
         scale = std::max(scale, std::abs(difference[i][q]));
-        const double here = std::abs(outputs(prediction.slopes[i][k])[q] - difference[i][q]);
+        const double here = std::abs(outputs(slopes[i][k])[q] - difference[i][q]);
         if (!(here <= off)) off = here;  // what is no number does not pass
       }
       if (!(off / scale <= worst)) worst = off / scale;
@@ -157,13 +166,16 @@ TEST(Sensitivity, IsTheDifferenceOfPredictions) {
 
 TEST(Sensitivity, GoesOnWhereShearTurnsWithinASegment) {
   for (const auto& [path, segment] : {std::pair{turning(), 1}, {following(), 3}}) {
-    const Prediction prediction = run({Rung::memory, Coupling::energy, path}, law_with_memory(), {all_parameters()});
+    Slopes slopes;
+    const Prediction prediction =
+        run({Rung::memory, Coupling::energy, path}, law_with_memory(), kept(slopes, all_parameters()));
+    ASSERT_EQ(slopes.size(), prediction.rows.size());
     std::vector<double> s_r;
     for (const PredictedRow& row : prediction.rows) {
       if (row.segment == segment) s_r.push_back(row.state.s_r.norm());
     }
     EXPECT_GT(std::abs(s_r.back() - s_r.front()), 5e-4) << "turned within the segment";
-    for (const auto& slopes : prediction.slopes) EXPECT_TRUE(std::isfinite(slopes[0].state.P));
+    for (const auto& of_row : slopes) EXPECT_TRUE(std::isfinite(of_row[0].state.P));
   }
 }
 
@@ -173,15 +185,17 @@ TEST(Sensitivity, OfEqs17And18IsTheirs) {
   p.anisotropy.a0 = 0;
   const auto path = path_from(0.74, {leg(Mode::D2, 0.2)});
   const auto index = [](const char* name) { return parameter_index(name); };
-  const Sensitivity sensitivity{{index("stress_ratio_max.Q_limit"), index("stress_rate.Q_limit"),
-                                 index("fabric_max.Q_limit"), index("fabric_rate.Q_limit"), index("pressure.p0")}};
+  Slopes slopes;
+  const Sensitivity sensitivity =
+      kept(slopes, {index("stress_ratio_max.Q_limit"), index("stress_rate.Q_limit"), index("fabric_max.Q_limit"),
+                    index("fabric_rate.Q_limit"), index("pressure.p0")});
   const Prediction prediction = predict(Rung::evolution, p, Coupling::single, path, state_from_law(p, 0.74),
                                         uniform_points(path, 40), {1e-9, 1e-13}, {}, {}, sensitivity);
   const LawModuli<double> m = moduli_at(p, 0.74);
   double off = 0;
   for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
     const double e = prediction.rows[i].shear_path, s = std::exp(-m.beta_s * e), F = std::exp(-m.beta_F * e);
-    const auto& slope = prediction.slopes[i];
+    const auto& slope = slopes[i];
     const auto differs = [&](double found, double expected, double largest) {
       const double here = std::abs(found - expected) / largest;
       if (!(here <= off)) off = here;
@@ -201,9 +215,10 @@ TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
   double off = 0;
   for (const Rung rung : kRungs) {
     const Case c{rung, Coupling::energy, reversal()};
-    const Prediction without = run(c, law_with_memory()), with = run(c, law_with_memory(), {all_parameters()});
-    EXPECT_TRUE(without.slopes.empty());
-    ASSERT_EQ(with.slopes.size(), with.rows.size());
+    Slopes slopes;
+    const Prediction without = run(c, law_with_memory()),
+                     with = run(c, law_with_memory(), kept(slopes, all_parameters()));
+    ASSERT_EQ(slopes.size(), with.rows.size());
     for (std::size_t i = 0; i < with.rows.size(); ++i) {
       const LawState<double>&a = with.rows[i].state, &b = without.rows[i].state;
       off = std::max({off, std::abs(a.P / b.P - 1), (a.sigma - b.sigma).norm() / b.P, (a.F - b.F).norm()});
@@ -215,12 +230,15 @@ TEST(Sensitivity, LeavesTheRowsAsTheyAre) {
 TEST(Sensitivity, EndsWhereTheStateUnjams) {
   const auto path = path_from(0.70, {leg(Mode::D2, 0.05), leg_to(Mode::ISO, 0.63, true), leg_to(Mode::ISO, 0.72)});
   for (const Rung rung : kRungs) {
-    const Prediction prediction = run({rung, Coupling::energy, path}, law_with_memory(), {all_parameters()});
+    Slopes slopes;
+    const Prediction prediction =
+        run({rung, Coupling::energy, path}, law_with_memory(), kept(slopes, all_parameters()));
     ASSERT_TRUE(prediction.unjammed);
+    ASSERT_EQ(slopes.size(), prediction.rows.size());
     bool jammed = true;
     for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
       jammed = jammed && prediction.rows[i].state.P > 0;
-      for (const RowSlope& slope : prediction.slopes[i])
+      for (const RowSlope& slope : slopes[i])
         EXPECT_EQ(std::isfinite(slope.state.P), jammed) << to_string(rung) << " row " << i;
     }
     EXPECT_GT(prediction.rows.back().state.P, 0) << "jammed again, which is not followed";
@@ -231,13 +249,14 @@ TEST(Sensitivity, IsThatOfTheImplicitMethodToo) {
   const LawParameters<double> p = law_with_memory();
   const auto path = reversal();
   Tolerances tolerances{1e-10, 1e-14};
-  const auto slopes = [&](Method method) {
+  const auto at_the_end = [&](Method method) {
     tolerances.method = method;
-    return predict(Rung::memory, p, Coupling::energy, path, state_from_law(p, 0.70), uniform_points(path, 5),
-                   tolerances, {}, {}, {all_parameters()})
-        .slopes.back();
+    Slopes slopes;
+    predict(Rung::memory, p, Coupling::energy, path, state_from_law(p, 0.70), uniform_points(path, 5), tolerances, {},
+            {}, kept(slopes, all_parameters()));
+    return slopes.back();
   };
-  const auto adams = slopes(Method::adams), bdf = slopes(Method::bdf);
+  const auto adams = at_the_end(Method::adams), bdf = at_the_end(Method::bdf);
   double off = 0;
   for (std::size_t k = 0; k < kParameterCount; ++k) {
     const double scale = std::max(adams[k].state.sigma.norm(), 1e-4 / std::max(1e-2, std::abs(*fields(p)[k])));
