@@ -20,9 +20,9 @@ while (($#)); do
 done
 command -v clang++-14 >/dev/null || { echo "tests/fuzz/run.sh: needs clang-14 and libclang-rt-14-dev (./install-packages.sh --full)" >&2; exit 2; }
 
-for each in fuzz $preset; do
-  cmake --preset $each --log-level=WARNING
-  cmake --build --preset $each --parallel "$(nproc)"
+for each in $(printf '%s\n' fuzz $preset | sort -u); do
+  cmake --preset "$each" --log-level=WARNING
+  cmake --build --preset "$each" --parallel "$(nproc)"
 done
 if [[ -z $grainlaw ]]; then
   cmake --build build/fuzz --parallel "$(nproc)" --target grainlaw
@@ -52,6 +52,7 @@ for reader in "${wanted[@]}"; do
   scene=$temporary/$reader corpus=build/fuzz/corpus/$reader log=build/fuzz/findings/$reader.log
   cp -r "$temporary/scene" "$scene"
   mkdir -p "$corpus" "$scene/first"
+  rm -f "$log"*
   start=$SECONDS code=0
   fuzz build/$preset "$limit" "$corpus" "$scene/first" >"$log" 2>&1 || code=1
   if [[ $preset != fuzz ]]; then fuzz build/fuzz -runs=0 "$corpus" >"$log.sanitizers" 2>&1 || code=1; fi
