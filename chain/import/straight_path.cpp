@@ -67,13 +67,13 @@ void find_corners(const std::vector<Observation>& rows, std::size_t first, std::
 }
 
 /// A direction that a segment may have.
-struct Candidate {
+struct NamedStep {
   Mode mode;
   Tensor D;
 };
 
-std::vector<Candidate> candidates_of(const Tensor& step) {
-  std::vector<Candidate> all;
+std::vector<NamedStep> candidates_of(const Tensor& step) {
+  std::vector<NamedStep> all;
   for (const auto& [mode, names] : {std::pair<Mode, std::vector<const char*>>{Mode::ISO, {"xyz"}},
                                     {Mode::UNI, {"xyz", "xzy", "zyx"}},
                                     {Mode::D2, {"xyz", "xzy", "yxz"}},
@@ -98,9 +98,9 @@ PathSegment straight(const std::vector<Observation>& rows, std::size_t first, st
     }
     return off;
   };
-  Candidate best{Mode::tensor, step};
+  NamedStep best{Mode::tensor, step};
   double least = tolerance;
-  for (const Candidate& candidate : candidates_of(step)) {
+  for (const NamedStep& candidate : candidates_of(step)) {
     const double norm = candidate.D.norm();
     if (!(norm > 0) || !(candidate.D.cwiseProduct(step).sum() > std::cos(kSameDirection) * norm * step.norm()))
       continue;

@@ -19,20 +19,20 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 using RowValue = double (*)(const predict::PredictedRow&);
 using MeasuredValue = double Observation::*;
 
-struct Quantity {
+struct CurveQuantity {
   const char* name;
   RowValue predicted;
   MeasuredValue measured;
   double predict::RowBand::*band;
 };
 
-constexpr std::array kQuantities{
-    Quantity{"P_star", [](const predict::PredictedRow& row) { return row.state.P; }, &Observation::P_star,
-             &predict::RowBand::P},
-    Quantity{"s_par", [](const predict::PredictedRow& row) { return row.s_par; }, &Observation::s_par,
-             &predict::RowBand::s_par},
-    Quantity{"F_par", [](const predict::PredictedRow& row) { return row.F_par; }, &Observation::F_par,
-             &predict::RowBand::F_par},
+constexpr std::array kCurveQuantities{
+    CurveQuantity{"P_star", [](const predict::PredictedRow& row) { return row.state.P; }, &Observation::P_star,
+                  &predict::RowBand::P},
+    CurveQuantity{"s_par", [](const predict::PredictedRow& row) { return row.s_par; }, &Observation::s_par,
+                  &predict::RowBand::s_par},
+    CurveQuantity{"F_par", [](const predict::PredictedRow& row) { return row.F_par; }, &Observation::F_par,
+                  &predict::RowBand::F_par},
 };
 
 /// The law along each rehearsal, at its rows.
@@ -47,7 +47,7 @@ std::vector<predict::Prediction> along(const CalibratedLaw& law, Rung rung, cons
 }
 
 void set_discrepancy(const std::vector<TestRecord>& rehearsals, const std::vector<predict::Prediction>& predictions,
-                     const Quantity& quantity, bool shears, QuantityPrecision& precision) {
+                     const CurveQuantity& quantity, bool shears, QuantityPrecision& precision) {
   if (rehearsals.size() < 2) return;
   const double n = static_cast<double>(rehearsals.size());
   std::size_t common = rehearsals.front().rows.size();
@@ -98,7 +98,7 @@ PredictionError prediction_error(const CalibratedLaw& law, const Path& path,
                                   predict::uniform_points(segments, kPointsPerSegment), {});
   const auto rehearsed = along(law, *rung, rehearsals);
   const bool shears = prediction.rows.back().shear_path > kFromShear;
-  for (const Quantity& quantity : kQuantities) {
+  for (const CurveQuantity& quantity : kCurveQuantities) {
     double largest = 0, widest = 0, squares = 0, rows = 0;
     for (const predict::PredictedRow& row : prediction.rows) {
       const double value = quantity.predicted(row), width = row.mean.*quantity.band;

@@ -10,6 +10,8 @@
 namespace grainlaw::dem {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 namespace fs = std::filesystem;
 
 // Measured on finished runs of 800 to 9261 spheres:
@@ -56,7 +58,6 @@ State dense_packing(const PreparationOptions& like, const EngineOptions& engine,
 /// Steps per second of one run, times its spheres.
 double rate_of_one(const State& state, const PreparationOptions& like, const EngineOptions& engine,
                    const std::stop_token& stop) {
-  using Clock = std::chrono::steady_clock;
   std::stop_source enough;
   const std::stop_callback forward(stop, [&] { enough.request_stop(); });
   ElementTestOptions options;

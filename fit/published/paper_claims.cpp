@@ -17,7 +17,7 @@ namespace grainlaw::fit {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kExact = 1e-6;        // of kinematics: exact but for the sums of logarithmic strain
+constexpr double kExactStrain = 1e-6;  // of kinematics: exact but for the sums of logarithmic strain
 constexpr double kSameJamming = 5e-4;  // within which the paper has D2 = D3
 constexpr double kScaledAt = 0.15;     // ln(nu/nu_c) at which Eq. (15) is compared: within the rows of every mode
 
@@ -274,7 +274,7 @@ void judge(Claim& claim, Printed printed, std::size_t packings) {
   const double range = packings < 2 ? kNaN : student_95(n - 1) * claim.standard_error;
   if (!is_sign && printed.half_digit == 0) {
     claim.verdict =
-        std::abs(claim.ours - printed.value) <= kExact * std::max(1.0, printed.value) ? "identity" : "differs";
+        std::abs(claim.ours - printed.value) <= kExactStrain * std::max(1.0, printed.value) ? "identity" : "differs";
   } else if (!std::isfinite(range)) {
     claim.verdict = "no error";
   } else if (is_sign) {

@@ -20,7 +20,7 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kGradientCosine = 1e-5;  // |cos| between the residual and every column of J at a true minimum
-constexpr double kExact = 1e-9;           // misfit over data below which the cosine is that of rounding errors
+constexpr double kExactFit = 1e-9;        // misfit over data below which the cosine is that of rounding errors
 constexpr double kOnBound = 1e-7;         // distance in units of the parameter's scale
 constexpr double kCurvatureStep = 1e-6;   // of a parameter's scale
 constexpr double kSettled = 1e-9;         // relative decrease of the cost over a whole round that is none
@@ -112,7 +112,7 @@ double data_norm(const std::vector<ResidualBlock>& blocks) {
 /// is orthogonal to every column of J whose parameter is free to move.
 bool is_minimum(const Solution& solution, double unit, const std::vector<int>& held) {
   const Eigen::VectorXd r = solution.weight.cwiseProduct(solution.misfit);
-  if (r.norm() <= kExact * unit) return true;
+  if (r.norm() <= kExactFit * unit) return true;
   for (Eigen::Index k = 0; k < solution.x.size(); ++k) {
     if (std::find(held.begin(), held.end(), static_cast<int>(k)) != held.end()) continue;
     const Eigen::VectorXd column = solution.weight.cwiseProduct(solution.jacobian.col(k));

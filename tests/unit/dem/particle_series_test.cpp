@@ -13,7 +13,7 @@
 namespace grainlaw::dem {
 namespace {
 
-const Deviator<double> kNone = Deviator<double>::Zero();
+const Deviator<double> kNoDeviator = Deviator<double>::Zero();
 constexpr double kSame = 1e-12;
 
 /// Averages of the engine and those of the same packing written, and read as somebody else's, must be the same but for the
@@ -32,7 +32,7 @@ class ParticleSeriesTest : public testing::TemporaryFolder {
     EngineOptions options = scene::engine_options();
     options.refuse_deep_overlaps = false;
     const CellMotion motion{state.packing.H, L, Transport::homogeneous};
-    return observe(Simulation(state, options, motion), motion, kNone);
+    return observe(Simulation(state, options, motion), motion, kNoDeviator);
   }
 
   ParticleSeries read(const Json& particles) {

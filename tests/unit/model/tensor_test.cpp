@@ -64,15 +64,15 @@ TEST(Tensor, InvariantsDoNotDependOnTheFrame) {
 }
 
 TEST(Tensor, Table1) {
-  struct Row {
+  struct Expected {
     const char* mode;
     Matrix3d rate;
     double norm, shape, lode, lode_reversed;
   };
-  const Row rows[] = {{"UNI", diagonal(0, 0, -1), 1, 1, 60, 0},
-                      {"D2", diagonal(1, 0, -1), std::sqrt(3.0), 0, 30, 30},
-                      {"D3", diagonal(0.5, 0.5, -1), 1.5, 1, 60, 0}};
-  for (const Row& row : rows) {
+  const Expected rows[] = {{"UNI", diagonal(0, 0, -1), 1, 1, 60, 0},
+                           {"D2", diagonal(1, 0, -1), std::sqrt(3.0), 0, 30, 30},
+                           {"D3", diagonal(0.5, 0.5, -1), 1.5, 1, 60, 0}};
+  for (const Expected& row : rows) {
     EXPECT_NEAR(deviatoric_norm(row.rate), row.norm, 1e-15) << row.mode;
     EXPECT_NEAR(shape_factor(row.rate), row.shape, 1e-14) << row.mode;
     EXPECT_NEAR(lode_angle(row.rate), row.lode, 1e-5) << row.mode;

@@ -24,7 +24,7 @@ using testing::expect_figure;
 using testing::leg;
 using testing::leg_to;
 
-constexpr Method kMethods[] = {Method::adams, Method::bdf};
+constexpr Method kSolvers[] = {Method::adams, Method::bdf};
 
 /// One component of the solution: m (1 + a sin(w e + phi)).
 struct Wave {
@@ -71,14 +71,14 @@ LawState<double> difference(const LawState<double>& a, const LawState<double>& b
   return {a.P - b.P, a.sigma - b.sigma, a.F - b.F};
 }
 
-struct Outcome {
+struct ErrorOfSolution {
   double error = 0;  // of P over P, of the deviators over their norm
   long rhs_evaluations = 0;
 };
 
 /// The law `p` with the sources that belong to `of_sources`.
-Outcome integrate(const LawParameters<double>& p, const LawParameters<double>& of_sources, Coupling coupling,
-                  const StraightSegment& segment, const Tolerances& tolerances) {
+ErrorOfSolution integrate(const LawParameters<double>& p, const LawParameters<double>& of_sources, Coupling coupling,
+                          const StraightSegment& segment, const Tolerances& tolerances) {
   const Solution exact = solution_of_size(p.isotropic.P_star(segment.nu_start));
   const LawDirection direction = law_direction(segment.direction);
   const SegmentLaw law(p, Rung::evolution, coupling, segment, 0);
@@ -95,7 +95,7 @@ Outcome integrate(const LawParameters<double>& p, const LawParameters<double>& o
                [&](double e, const double* y, double* scale) { law.scale(e, y, scale); });
   Unknowns y = law.unknowns_of(0, exact.at(0));
   solver.start(0, y, segment.length);
-  Outcome outcome;
+  ErrorOfSolution outcome;
   for (int i = 1; i <= 100; ++i) {
     const double e = i == 100 ? segment.length : segment.length * i / 100;
     if (solver.advance(e, y).kind != Arrival::Kind::reached) {
@@ -122,7 +122,7 @@ TEST(Manufactured, O5SolutionWithSourcesIsFollowedToTheTolerance) {
   LawParameters<double> p = published_parameters();
   p.anisotropy.a2 = 1.18;
   std::vector<std::vector<std::string>> table;
-  for (const Method method : kMethods) {
+  for (const Method method : kSolvers) {
     const std::string name = method == Method::adams ? "adams" : "bdf";
     testing::ToleranceStudy worst;
     double slope_off = 0;
@@ -131,7 +131,7 @@ TEST(Manufactured, O5SolutionWithSourcesIsFollowedToTheTolerance) {
         testing::ToleranceStudy study;
         for (int k = 3; k <= 12; ++k) {
           const double relative = std::pow(10.0, -k);
-          const Outcome outcome = integrate(p, p, coupling, segment, {relative, 1e-4 * relative, method});
+          const ErrorOfSolution outcome = integrate(p, p, coupling, segment, {relative, 1e-4 * relative, method});
           study.add(relative, outcome.error, outcome.rhs_evaluations);
           worst.add(relative, outcome.error, outcome.rhs_evaluations);
         }
@@ -149,7 +149,7 @@ TEST(Manufactured, ALawThatIsALittleOffIsNoticed) {
   LawParameters<double> p = published_parameters(), off = p;
   p.anisotropy.a2 = 1.18;
   off.anisotropy.a2 = 1.18 * (1 + 1e-6);
-  for (const Method method : kMethods) {
+  for (const Method method : kSolvers) {
     EXPECT_GT(integrate(off, p, Coupling::energy, segments()[0], {1e-11, 1e-15, method}).error, 1e-8);
   }
 }
