@@ -39,9 +39,9 @@ std::vector<State> packings_with_a_big_sphere() {
           scene::state_of_family({"Intruder", 1, 3}, 60, 0.5, draw), scene::jammed({"Intruder", 1, 3}, 60, 0.75, 5)};
 }
 
-/// Message of the refusal of `action`, empty when it is accepted.
+/// Message of the error that `action` ends in, of whichever kind; empty when it does not.
 template <class Action>
-std::string refusal(const Action& action) {
+std::string error_of(const Action& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -98,7 +98,7 @@ TEST(DeepOverlap, D17ElementTestsRefuseAPairThatNothingHolds) {
         options.engine.time_step_fraction = fraction;
         options.drive.strain_rate = 3000;
         double residual = 0;
-        const std::string message = refusal([&] {
+        const std::string message = error_of([&] {
           for (const Observation& row : run_element_test(deep, compression(deep), options, {}).rows) {
             residual = std::max(residual, std::abs(row.energy_residual));
           }
@@ -127,7 +127,7 @@ TEST(DeepOverlap, D17ElementTestsAcceptAPairThatIsHeld) {
   options.engine = scene::engine_options();
   options.engine.time_step_fraction = 0.02;
   options.drive.strain_rate = 3000;
-  EXPECT_EQ(refusal([&] { run_element_test(held, compression(held), options, {}); }), "");
+  EXPECT_EQ(error_of([&] { run_element_test(held, compression(held), options, {}); }), "");
 }
 
 TEST(DeepOverlap, D17RelaxationParts) {
@@ -155,9 +155,9 @@ TEST(DeepOverlap, D18CoincidingSpheresAreNamed) {
   for (const double distance : {0.0, 1e-300, 1e-200, 1e-162}) {
     for (int axis = 0; axis < 3; ++axis) {
       const State state = at_distance(distance, axis);
-      not_named += names_both(refusal([&] { scene::start(state); })) ? 0 : 1;
-      not_named += names_both(refusal([&] { run_element_test(state, compression(state), {}, {}); })) ? 0 : 1;
-      not_named += names_both(refusal([&] {
+      not_named += names_both(error_of([&] { scene::start(state); })) ? 0 : 1;
+      not_named += names_both(error_of([&] { run_element_test(state, compression(state), {}, {}); })) ? 0 : 1;
+      not_named += names_both(error_of([&] {
         State copy = state;
         relax(copy, {}, {}, {});
       }))
