@@ -166,6 +166,14 @@ TEST_F(SeriesCsv, RefusesEmptyFieldsWhereANumberIsNeeded) {
             std::string::npos);
 }
 
+// Found by the fuzzer: such a row was taken, and could not be written again.
+TEST_F(SeriesCsv, RefusesNumbersWhoseNormIsInfinite) {
+  const std::string text = text_without({"s_dev", "s_par"}, [](Observation& r) {
+    if (r.eps_dev > 0.1) r.stress.tensor(0, 1) = r.stress.tensor(1, 0) = 1e308;
+  });
+  EXPECT_NE(refusal_of(text).find("s_dev becomes infinite"), std::string::npos) << refusal_of(text);
+}
+
 TEST_F(SeriesCsv, OfAPredictionIsReadBack) {
   const auto segments = resolve(record_.path);
   const auto start = predict::state_from_law(testing::synthetic_truth(), record_.path.nu);
