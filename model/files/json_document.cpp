@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "model/files/one_line.hpp"
@@ -27,7 +28,10 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     if (value == 0 && source_ == JsonSource::user) refuse_negative_zero();
     return put(value);
   }
-  bool number_unsigned(std::uint64_t value) override { return put(value); }
+  bool number_unsigned(std::uint64_t value) override {
+    // as integers beyond 2^63 the checker of schemas would take them for negative ones, which a bound may allow
+    return std::in_range<std::int64_t>(value) ? put(value) : put(static_cast<double>(value));
+  }
   bool number_float(double value, const std::string&) override {
     if (source_ == JsonSource::user) {
       if (value == 0 && std::signbit(value)) refuse_negative_zero();

@@ -43,6 +43,15 @@ TEST(SchemaCheck, NamesFileKeyReasonAndRemedyInOneLine) {
   EXPECT_EQ(schema_refusal("[]"), "s.json: got []; give an object (an object; every key may be left out)");
 }
 
+// Found by the fuzzer: the library that checks takes integers beyond 2^63 for negative ones, -1 here.
+TEST(SchemaCheck, RefusesIntegersThatAreNoneOf64Bits) {
+  EXPECT_NE(schema_refusal(R"({"initial": {"nu": 0.7}, "segments": [{"extent": {"eps_dev": 0.1},
+                             "rate_tensor": [[-1, 0, 0], [0, 0.5, 0], [0, 0, 18446744073709551615]]}]})",
+                           Schema::path)
+                .find("rate_tensor[2][2]: got 1.844"),
+            std::string::npos);
+}
+
 TEST(SchemaCheck, RefusesWrongTypesEverywhere) {
   for (const char* text : {R"({"particles": "100"})",
                            R"({"particles": 100.5})",
