@@ -67,7 +67,7 @@ VariancePrior prior_from_json(const Json& json, const std::string& name) {
           refuse(fmt::format("covariance[{}][{}]: is not symmetric", i, j));
       }
     }
-    prior.covariance = ((prior.covariance + prior.covariance.transpose()) / 2).eval();
+    prior.covariance = (prior.covariance / 2 + prior.covariance.transpose() / 2).eval();
     if (!(prior.size.spheres > 0 && prior.size.packings > 1)) refuse("packings and spheres must be positive");
   } catch (const Json::exception& error) {
     refuse(error.what());

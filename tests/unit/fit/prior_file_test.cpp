@@ -30,6 +30,13 @@ TEST(PriorFile, ComesBackAsItWas) {
   EXPECT_EQ(again.covariance, prior.covariance);
 }
 
+TEST(PriorFile, KeepsTheLargestNumbers) {  // found by the fuzzer: their sum is none
+  Json json = example();
+  json["covariance"] = {{1e308, 0.1}, {0.1, 1}};
+  const auto D = static_cast<Eigen::Index>(parameter_index("overlap.D"));
+  EXPECT_EQ(prior_from_json(json, "here").covariance(D, D), 1e308);
+}
+
 TEST(PriorFile, IsRefusedByTheNameOfWhatIsWrong) {
   const auto message_of = [](const char* key, Json value) -> std::string {
     Json json = example();
