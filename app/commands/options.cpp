@@ -12,7 +12,8 @@
 namespace grainlaw::app {
 namespace {
 
-constexpr std::size_t kMostSeeds = 1000;  // as in SPEC
+constexpr std::size_t kMostSeeds = 1000;  // as in SPEC, and so the largest:
+constexpr std::uint64_t kLargestSeed = std::uint64_t{1} << 53;
 
 }  // namespace
 
@@ -50,6 +51,7 @@ std::vector<std::uint64_t> seeds_of(const std::string& option, const std::string
     const auto first = number_of<std::uint64_t>(part.substr(0, dash));
     const auto last = dash == std::string::npos ? first : number_of<std::uint64_t>(part.substr(dash + 1));
     if (!first || !last || *last < *first) refuse("give seeds and ranges of them, e.g. 201-205 or 1,3,7-9");
+    if (*last > kLargestSeed) refuse(fmt::format("give seeds up to {}", kLargestSeed));
     if (*last - *first >= kMostSeeds - seeds.size()) refuse(fmt::format("give at most {} seeds", kMostSeeds));
     for (std::uint64_t more = 0; more <= *last - *first; ++more) seeds.push_back(*first + more);
   }
