@@ -42,23 +42,22 @@ struct Coverage {
   double share() const { return rows > 0 ? static_cast<double>(within) / rows : kUndefined; }
 };
 
-template <class Predicted, class Observed>
-QuantityComparison compare_quantity(const std::string& name, const Prediction& prediction, const TestRecord& test,
-                                    double from, Predicted predicted, double RowBand::*band, Observed observed) {
+QuantityComparison compare_quantity(const ComparedQuantity& quantity, const Prediction& prediction,
+                                    const TestRecord& test, double from) {
   QuantityComparison result;
-  result.quantity = name;
+  result.quantity = quantity.name;
   double sum = 0, sum_of_squares = 0, largest_observed = 0;
   Coverage mean, single;
   for (std::size_t i = 0; i < prediction.rows.size(); ++i) {
     const PredictedRow& row = prediction.rows[i];
-    const double p = predicted(row), o = observed(test.rows[i]);
+    const double p = quantity.predicted(row), o = test.rows[i].*quantity.measured;
     if (row.shear_path < from || !std::isfinite(p) || !std::isfinite(o)) continue;
     const double difference = p - o;
     ++result.rows;
     sum += difference;
     sum_of_squares += difference * difference;
-    mean.add(difference, row.mean.*band);
-    single.add(difference, row.single.*band);
+    mean.add(difference, row.mean.*quantity.band);
+    single.add(difference, row.single.*quantity.band);
     largest_observed = std::max(largest_observed, std::abs(o));
     if (result.rows == 1 || std::abs(difference) > std::abs(result.largest)) {
       result.largest = difference;
@@ -91,15 +90,8 @@ Comparison compare(const Prediction& prediction, const TestRecord& test) {
   const double from = counts_from(resolve(test.path));
   Comparison comparison;
   comparison.test = test.name;
-  comparison.quantities = {compare_quantity(
-                               "P_star", prediction, test, from, [](const PredictedRow& r) { return r.state.P; },
-                               &RowBand::P, [](const Observation& o) { return o.P_star; }),
-                           compare_quantity(
-                               "s_par", prediction, test, from, [](const PredictedRow& r) { return r.s_par; },
-                               &RowBand::s_par, [](const Observation& o) { return o.s_par; }),
-                           compare_quantity(
-                               "F_par", prediction, test, from, [](const PredictedRow& r) { return r.F_par; },
-                               &RowBand::F_par, [](const Observation& o) { return o.F_par; })};
+  for (const ComparedQuantity& quantity : kComparedQuantities)
+    comparison.quantities.push_back(compare_quantity(quantity, prediction, test, from));
   return comparison;
 }
 

@@ -4,12 +4,14 @@
 //   shear_path >= 0.01 (all rows when the path has no shear). NaN where no row counts.
 // Coverage of a band: the share of these rows that have one and in which DEM lies within it. NaN without a band.
 
+#include <array>
+
 #include "predict/predict.hpp"
 
 namespace grainlaw::predict {
 
 struct QuantityComparison {
-  std::string quantity;                              ///< "P_star", "s_par", "F_par"
+  std::string quantity;                              ///< of kComparedQuantities
   int rows = 0;                                      ///< rows that count: both values defined
   double bias = 0;                                   ///< in the unit of the quantity [-]
   double rms = 0;                                    ///< root mean square of prediction - DEM [-]
@@ -33,6 +35,22 @@ constexpr auto fields_of(std::type_identity<QuantityComparison>) {
                     Field{&Q::coverage_single, "coverage_single"}};
 }
 static_assert(tells_every_member<QuantityComparison>());
+
+/// What a prediction is compared by, and the law is judged by: [-] each.
+struct ComparedQuantity {
+  const char* name;
+  double (*predicted)(const PredictedRow&);
+  double (*slope)(const RowSlope&);
+  double RowBand::*band;
+  double Observation::*measured;
+};
+inline constexpr std::array<ComparedQuantity, 3> kComparedQuantities{
+    {{"P_star", [](const PredictedRow& row) { return row.state.P; }, [](const RowSlope& row) { return row.state.P; },
+      &RowBand::P, &Observation::P_star},
+     {"s_par", [](const PredictedRow& row) { return row.s_par; }, [](const RowSlope& row) { return row.s_par; },
+      &RowBand::s_par, &Observation::s_par},
+     {"F_par", [](const PredictedRow& row) { return row.F_par; }, [](const RowSlope& row) { return row.F_par; },
+      &RowBand::F_par, &Observation::F_par}}};
 
 struct Comparison {
   std::string test;                            ///< name of the test

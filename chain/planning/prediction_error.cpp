@@ -1,13 +1,13 @@
 #include "chain/planning/prediction_error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "model/student.hpp"
 #include "predict/bands.hpp"
+#include "predict/compare.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -15,25 +15,6 @@ namespace {
 constexpr int kPointsPerSegment = 100;
 constexpr double kFromShear = 0.01;  // equations.md 0, errors
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-using RowValue = double (*)(const predict::PredictedRow&);
-using MeasuredValue = double Observation::*;
-
-struct CurveQuantity {
-  const char* name;
-  RowValue predicted;
-  MeasuredValue measured;
-  double predict::RowBand::*band;
-};
-
-constexpr std::array kCurveQuantities{
-    CurveQuantity{"P_star", [](const predict::PredictedRow& row) { return row.state.P; }, &Observation::P_star,
-                  &predict::RowBand::P},
-    CurveQuantity{"s_par", [](const predict::PredictedRow& row) { return row.s_par; }, &Observation::s_par,
-                  &predict::RowBand::s_par},
-    CurveQuantity{"F_par", [](const predict::PredictedRow& row) { return row.F_par; }, &Observation::F_par,
-                  &predict::RowBand::F_par},
-};
 
 /// The law along each rehearsal, at its rows.
 std::vector<predict::Prediction> along(const CalibratedLaw& law, Rung rung, const std::vector<TestRecord>& rehearsals) {
@@ -47,7 +28,7 @@ std::vector<predict::Prediction> along(const CalibratedLaw& law, Rung rung, cons
 }
 
 void set_discrepancy(const std::vector<TestRecord>& rehearsals, const std::vector<predict::Prediction>& predictions,
-                     const CurveQuantity& quantity, bool shears, QuantityPrecision& precision) {
+                     const predict::ComparedQuantity& quantity, bool shears, QuantityPrecision& precision) {
   if (rehearsals.size() < 2) return;
   const double n = static_cast<double>(rehearsals.size());
   std::size_t common = rehearsals.front().rows.size();
@@ -98,7 +79,7 @@ PredictionError prediction_error(const CalibratedLaw& law, const Path& path,
                                   predict::uniform_points(segments, kPointsPerSegment), {});
   const auto rehearsed = along(law, *rung, rehearsals);
   const bool shears = prediction.rows.back().shear_path > kFromShear;
-  for (const CurveQuantity& quantity : kCurveQuantities) {
+  for (const predict::ComparedQuantity& quantity : predict::kComparedQuantities) {
     double largest = 0, widest = 0, squares = 0, rows = 0;
     for (const predict::PredictedRow& row : prediction.rows) {
       const double value = quantity.predicted(row), width = row.mean.*quantity.band;

@@ -1,13 +1,12 @@
 #include "chain/studies/law_quantities.hpp"
 
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "dem/runs/spec_file.hpp"
 #include "fit/staged_laws.hpp"
-#include "predict/predict.hpp"
+#include "predict/compare.hpp"
 #include "predict/segment_sensitivity.hpp"
 
 namespace grainlaw::chain {
@@ -106,19 +105,6 @@ StudyQuantity mean_of(const std::string& name, const Eigen::RowVectorXd& x) {
   return quantity;
 }
 
-/// Of a predicted row.
-struct Predicted {
-  const char* name;
-  double (*value)(const predict::PredictedRow&);
-  double (*slope)(const predict::RowSlope&);
-};
-constexpr std::array<Predicted, 3> kPredicted{{{"P_star", [](const predict::PredictedRow& row) { return row.state.P; },
-                                                [](const predict::RowSlope& slope) { return slope.state.P; }},
-                                               {"s_par", [](const predict::PredictedRow& row) { return row.s_par; },
-                                                [](const predict::RowSlope& slope) { return slope.s_par; }},
-                                               {"F_par", [](const predict::PredictedRow& row) { return row.F_par; },
-                                                [](const predict::RowSlope& slope) { return slope.F_par; }}}};
-
 }  // namespace
 
 std::vector<StudyQuantity> law_quantities(const fit::Calibration& calibration, const std::vector<double>& densities,
@@ -147,7 +133,7 @@ std::vector<StudyQuantity> predicted_quantities(const fit::Calibration& calibrat
   const auto segments = resolve(path);
   const auto points = predict::uniform_points(segments, kStudyPoints);
   std::vector<StudyQuantity> quantities;
-  for (const Predicted& of : kPredicted) {
+  for (const predict::ComparedQuantity& of : predict::kComparedQuantities) {
     const auto rows = static_cast<Eigen::Index>(points.size());
     quantities.push_back({of.name, Eigen::VectorXd(rows), Eigen::MatrixXd::Zero(rows, influence.cols()), true});
   }
@@ -156,7 +142,7 @@ std::vector<StudyQuantity> predicted_quantities(const fit::Calibration& calibrat
     for (std::size_t q = 0; q < quantities.size(); ++q) {
       Eigen::RowVectorXd of_row(influence.rows());
       for (std::size_t k = 0; k < slopes.size(); ++k)
-        of_row(static_cast<Eigen::Index>(k)) = kPredicted[q].slope(slopes[k]);
+        of_row(static_cast<Eigen::Index>(k)) = predict::kComparedQuantities[q].slope(slopes[k]);
       quantities[q].influence.row(row) = of_row * influence;
     }
     ++row;
@@ -167,7 +153,8 @@ std::vector<StudyQuantity> predicted_quantities(const fit::Calibration& calibrat
                        {parameters, true, add_influence});
   for (std::size_t q = 0; q < quantities.size(); ++q) {
     for (std::size_t i = 0; i < prediction.rows.size(); ++i)
-      quantities[q].values(static_cast<Eigen::Index>(i)) = kPredicted[q].value(prediction.rows[i]);
+      quantities[q].values(static_cast<Eigen::Index>(i)) =
+          predict::kComparedQuantities[q].predicted(prediction.rows[i]);
   }
   return quantities;
 }
