@@ -63,14 +63,11 @@ void check_corners(const ForeignRows& foreign, const TestRecord& record) {
   }
 }
 
-/// Products of given numbers may be too large for a number.
 void check_finite(const ForeignRows& foreign, const std::vector<Observation>& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (const Column<Observation>& column : columns_of<Observation>()) {
-      if (std::isinf(column.get(rows[i])))
-        throw InvalidInput(fmt::format("{}: {} becomes infinite; are the units and the packing's numbers right?",
-                                       foreign.place(i, column.name), column.name));
-    }
+    if (const auto* column = infinite_column(rows[i]))
+      throw InvalidInput(fmt::format("{}: {} becomes infinite; are the units and the packing's numbers right?",
+                                     foreign.place(i, column->name), column->name));
   }
 }
 

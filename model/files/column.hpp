@@ -89,6 +89,16 @@ const std::vector<Column<Row>>& columns_of() {
   return all;
 }
 
+/// The first column of `row` that holds an infinite number, which no file takes: products of given numbers may be too large
+/// for one. Null without.
+template <class Row>
+const Column<Row>* infinite_column(const Row& row) {
+  const auto& columns = columns_of<Row>();
+  const auto column =
+      std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return std::isinf(c.get(row)); });
+  return column == columns.end() ? nullptr : &*column;
+}
+
 /// The titles of the columns, or one row, without the end of the line.
 template <class Row>
 std::string csv_header() {

@@ -95,11 +95,11 @@ class SeriesReader {
       reader_.refuse("segment", "falls behind that of the row before");
     const Observation all = completed(row, before, packing_.stress_unit(), N_);
     for (const auto& [column, value] : kFollowing) {
-      if (given_.contains(column)) continue;
-      row.*value = all.*value;
-      if (std::isinf(row.*value))
-        reader_.refuse("", fmt::format("{} becomes infinite, so large are the numbers that it follows from", column));
+      if (!given_.contains(column)) row.*value = all.*value;
     }
+    if (const auto* column = infinite_column(row))
+      reader_.refuse("",
+                     fmt::format("{} becomes infinite, so large are the numbers that it follows from", column->name));
   }
 
   CsvReader reader_;
