@@ -22,6 +22,9 @@ struct NeighbourList {
   double r_max = 0;                  ///< largest radius [m]
 };
 
+/// Farthest that a file may put a sphere, in cells: beyond, the two are not in one unit.
+constexpr double kMaxCellsAway = 1000;
+
 /// Wraps the fractions of the packing into [0, 1].
 void wrap(Packing& packing);
 

@@ -19,7 +19,6 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr std::size_t kMaxRows = 100'000'000;
-constexpr double kMaxCellsAway = 1000;
 
 enum Column : std::size_t { id, x, y, z, r, vx, vy, vz, kColumns };
 constexpr std::array<std::string_view, kColumns> kName{"id", "x", "y", "z", "r", "vx", "vy", "vz"};

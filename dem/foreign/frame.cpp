@@ -14,7 +14,6 @@ namespace grainlaw::dem {
 namespace {
 
 constexpr std::size_t kNone = std::string::npos;
-constexpr double kFarthestCells = 1000;
 
 std::size_t place_of(const NumberTable& table, const std::string& title) {
   const auto at = std::find(table.columns.begin(), table.columns.end(), title);
@@ -183,7 +182,7 @@ void Frames::take_spheres(const ForeignFrame& from, Frame& to) const {
     if (!(p.radius[i] > 0)) throw columns.refusal(row, r != kNone ? r : diameter, "is not positive");
     const Eigen::Vector3d s =
         in_cell ? numbers(scaled) : Eigen::Vector3d(inverse * (request_.length * (numbers(place) - from.origin)));
-    if (!(s.lpNorm<Eigen::Infinity>() <= kFarthestCells))
+    if (!(s.lpNorm<Eigen::Infinity>() <= kMaxCellsAway))
       throw columns.refusal(row, (in_cell ? scaled : place)[0],
                             "lies more than 1000 cells away; are both in one unit?");
     p.sx[i] = s[0], p.sy[i] = s[1], p.sz[i] = s[2];
