@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -14,10 +13,6 @@
 
 namespace grainlaw::dem {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
 void check_options(const State& start, const ElementTestOptions& options) {
   if (options.rows < 1) throw InvalidInput("rows: must be at least 1");

@@ -1,5 +1,5 @@
 #pragma once
-// A long loop's tie to its RunControl: stops it on request and lets progress through a few times a second.
+// A long loop's tie to its RunControl: stops it on request and lets progress through a few times a second. Its clock.
 
 #include <chrono>
 #include <string>
@@ -9,6 +9,11 @@
 #include "model/vocabulary/run_control.hpp"
 
 namespace grainlaw::dem {
+
+using Clock = std::chrono::steady_clock;
+inline double seconds_since(Clock::time_point then) {
+  return std::chrono::duration<double>(Clock::now() - then).count();
+}
 
 class RunWatch {
  public:
@@ -29,7 +34,6 @@ class RunWatch {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
   const RunControl& control_;
   Progress progress_;
   Clock::time_point next_report_{};

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "dem/element_tests/energy_watch.hpp"
+#include "dem/engine/run_watch.hpp"
 #include "dem/export/snapshot.hpp"
 #include "dem/lammps/frame_row.hpp"
 #include "model/files/output.hpp"
@@ -16,11 +17,7 @@ namespace grainlaw::dem {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
 constexpr double kSameCell = 1e-10;  // relative
-
-double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
 
 /// A segment as LAMMPS takes it.
 struct Leg {

@@ -16,6 +16,7 @@
 #include <sstream>
 #include <thread>
 
+#include "dem/engine/run_watch.hpp"
 #include "model/files/one_line.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -23,8 +24,6 @@ namespace grainlaw::dem {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
 constexpr std::chrono::seconds kAnswer{30};  // for LAMMPS to say what it is
 constexpr std::chrono::seconds kGrace{5};    // between SIGTERM and SIGKILL
 constexpr std::chrono::milliseconds kNap{10};

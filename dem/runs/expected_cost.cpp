@@ -1,16 +1,14 @@
 #include "dem/runs/expected_cost.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 
+#include "dem/engine/run_watch.hpp"
 #include "dem/runs/feasibility.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 namespace fs = std::filesystem;
 
@@ -71,7 +69,7 @@ double rate_of_one(const State& state, const PreparationOptions& like, const Eng
   const auto count = [&](Stepper&, int, double) {
     if (steps == 0) first = Clock::now();
     ++steps;
-    seconds = std::chrono::duration<double>(Clock::now() - first).count();
+    seconds = seconds_since(first);
     if (seconds > kMeasured) enough.request_stop();
   };
   try {

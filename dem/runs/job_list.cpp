@@ -8,12 +8,11 @@
 #include <mutex>
 #include <thread>
 
+#include "dem/engine/run_watch.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 enum class Phase { waiting, elsewhere, running, done };
 

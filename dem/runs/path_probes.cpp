@@ -17,7 +17,7 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kRounding = 1e-9;  // of path lengths
+constexpr double kRoundingOfPaths = 1e-9;
 
 /// max(|d eps_vol|, |d eps_dev|) per unit of e.
 double length_rate(const StraightSegment& segment) {
@@ -62,7 +62,7 @@ StepObserver PathProbes::observer() {
   return [this](Stepper& stepper, int segment, double e) {
     const auto index = static_cast<std::size_t>(segment);
     const double length = length_before(index) + length_rate(segments_[index]) * e;
-    if (length < request_.every * static_cast<double>(done_) - kRounding) return;
+    if (length < request_.every * static_cast<double>(done_) - kRoundingOfPaths) return;
     probe(stepper.simulation().state(), segment, e);
     save();
   };
