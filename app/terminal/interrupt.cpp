@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -17,13 +19,27 @@
 namespace grainlaw::app {
 namespace {
 
-// A handler may only touch these: a lock-free flag and a descriptor.
-std::atomic<int> signals_seen{0};
+// timeout(1), mpirun and npm signal the process and its group: it gets one wish twice.
+constexpr std::int64_t kOneWishNs = 500'000'000;
+
+// A handler may only touch lock-free values: the time of the first signal (ns, 0 before it) and a descriptor.
+std::atomic<std::int64_t> first_signal{0};
 std::atomic<int> pipe_in{-1};
+
+std::int64_t now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1'000'000'000 + now.tv_nsec;
+}
 
 extern "C" void on_signal(int) {
   const int saved = errno;
-  if (signals_seen.fetch_add(1) > 0) _exit(static_cast<int>(ExitCode::interrupted));
+  std::int64_t first = 0;
+  if (const std::int64_t now = now_ns(); !first_signal.compare_exchange_strong(first, now)) {
+    if (now - first >= kOneWishNs) _exit(static_cast<int>(ExitCode::interrupted));
+    errno = saved;
+    return;
+  }
   const char signalled = 's';
   while (write(pipe_in, &signalled, 1) < 0 && errno == EINTR) {
   }
@@ -49,7 +65,7 @@ struct InterruptGuard::Watch {
 InterruptGuard::InterruptGuard() : watch_(new Watch) {
   if (pipe2(watch_->ends, O_CLOEXEC) != 0)
     throw Error(fmt::format("signals: no pipe can be opened: {}", std::strerror(errno)));
-  signals_seen = 0;
+  first_signal = 0;
   pipe_in = watch_->ends[1];
   // stop callbacks are no business of a signal handler: a thread requests the stop
   watch_->thread = std::jthread([watch = watch_.get()] {

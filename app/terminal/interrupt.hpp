@@ -1,5 +1,6 @@
 #pragma once
-// SIGINT and SIGTERM: the first asks the work to stop at its next safe point, the second ends the process at once.
+// SIGINT and SIGTERM: the first asks the work to stop at its next safe point, another after half a second or more ends
+// the process at once.
 
 #include <memory>
 #include <stop_token>

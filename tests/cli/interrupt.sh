@@ -27,6 +27,8 @@ for signal in INT TERM; do
   wait $second || code=$?
   [[ $code == 130 ]] && grep -q "long.*: is made by process $pid on " other || fail "two processes in one store: $code $(cat other)"
   kill -$signal $pid
+  sleep 0.02
+  kill -$signal $pid 2>/dev/null || true  # as timeout(1) and mpirun do: the process and its group, one wish
   code=0
   wait $pid || code=$?
   [[ $code == 130 ]] || fail "SIG$signal: exit code $code: $(cat log)"
