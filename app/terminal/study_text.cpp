@@ -81,7 +81,7 @@ std::string study_text(const predict::IntegratorStudy& study) {
 }
 
 std::string study_text(const chain::BandsStudy& study) {
-  constexpr const char* kRow = "  {:<7} {:>5} {:>4} {:>9} {:>9} {:>9} {:>8} {:>6} {:>7}\n";
+  constexpr const char* kRow = "  {:<7} {:>5} {:>4} {:>16} {:>7} {:>7} {:>8} {:>5} {:>7}\n";
   std::string text =
       fmt::format(fmt::runtime(kRow), "", "rows", "m", "bias/w", "rms/w", "tau/w", "without", "mean", "single");
   std::string heading;
@@ -90,9 +90,9 @@ std::string study_text(const chain::BandsStudy& study) {
     if (above != heading) text += heading = std::move(above);
     const auto share = [](double x) { return fmt::format("{:.0f}%", 100 * x); };
     text += fmt::format(fmt::runtime(kRow), to_string(c.quantity), c.rows,
-                        fmt::format("{}{}", c.degrees_of_freedom, c.of_kind ? "" : "*"), fmt::format("{:+.5f}", c.bias),
-                        fmt::format("{:.5f}", c.rms), fmt::format("{:.5f}", c.tau), share(c.without), share(c.mean),
-                        share(c.single));
+                        fmt::format("{}{}", c.degrees_of_freedom, c.of_kind ? "" : "*"),
+                        fmt::format("{:+.4f} ± {:.4f}", c.bias, c.bias_error), fmt::format("{:.4f}", c.rms),
+                        fmt::format("{:.4f}", c.tau), share(c.without), share(c.mean), share(c.single));
   }
   constexpr const char* kSum = "{:<9} {:<8} {:>5} {:>8} {:>6} {:>6} {:>7} {:>6} {:>7} {:>9}\n";
   text += "* too few others of the kind: all\n\nover the paths, each left out; least: of a path\n";

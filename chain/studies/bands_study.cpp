@@ -21,12 +21,12 @@ double half(const predict::Variance& variance) {
   return variance.value > 0 ? student_95(variance.degrees_of_freedom) * std::sqrt(variance.value) : 0;
 }
 
-/// `rows` against the band that `error` gives; only the shares, bias and rms are set.
+/// `rows` against the band that `error` gives; only the shares, bias, its error and rms are set.
 BandCoverage coverage_of(const predict::RehearsedRows& rows, Rehearsed quantity, const LawError& error,
                          const PackingScatter& scatter) {
   BandCoverage coverage;
   const double t = scatter.degrees_of_freedom > 0 ? student_95(scatter.degrees_of_freedom) : 0;
-  double within = 0, within_without = 0, within_single = 0, singles = 0, squares = 0, sum = 0, largest = 0;
+  double within = 0, within_without = 0, within_single = 0, singles = 0, squares = 0, sum = 0, errors = 0, largest = 0;
   for (const auto& values : rows) {
     const predict::RehearsedValue& value = values[static_cast<std::size_t>(quantity)];
     if (value.differences.empty()) continue;
@@ -41,10 +41,12 @@ BandCoverage coverage_of(const predict::RehearsedRows& rows, Rehearsed quantity,
       within_single += std::abs(single) <= std::hypot(band, own * std::sqrt(n));
     singles += n;
     sum += d / w;
+    errors += std::sqrt(value.variance + value.mean_variance) / w;
     squares += d * d / (w * w);
     largest = std::max(largest, std::abs(d / w));
   }
   coverage.bias = sum / coverage.rows;
+  coverage.bias_error = errors / coverage.rows;
   coverage.rms = std::sqrt(squares / coverage.rows);
   coverage.without = within_without / coverage.rows;
   coverage.mean = within / coverage.rows;

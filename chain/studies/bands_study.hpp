@@ -23,21 +23,30 @@ struct BandCoverage {
   double degrees_of_freedom = 0;  ///< m, the others
   double tau = 0;                 ///< from the others [w]
   double bias = 0;                ///< mean of DEM - law [w]
-  double rms = 0;                 ///< root mean square of it [w]
-  double without = 0;             ///< share of rows whose mean of runs lies in the band without the law's own error
-  double mean = 0;                ///< share of rows whose mean of runs lies in the band, its own error added
-  double single = 0;              ///< share of rows of the runs in the band of a single run
-  bool whole = false;  ///< whether the mean of the runs is nowhere beyond the largest deviation of the others
+  double bias_error = 0;  ///< of the packings and of the parameters, as if one along the path: standard error [w]
+  double rms = 0;         ///< root mean square of it [w]
+  double without = 0;     ///< share of rows whose mean of runs lies in the band without the law's own error
+  double mean = 0;        ///< share of rows whose mean of runs lies in the band, its own error added
+  double single = 0;      ///< share of rows of the runs in the band of a single run
+  bool whole = false;     ///< whether the mean of the runs is nowhere beyond the largest deviation of the others
 };
 constexpr auto fields_of(std::type_identity<BandCoverage>) {
   using C = BandCoverage;
-  return std::tuple{Field{&C::path, "path"},         Field{&C::kind, "kind"},
-                    Field{&C::packings, "packings"}, Field{&C::model, "model"},
-                    Field{&C::quantity, "quantity"}, Field{&C::rows, "rows"},
-                    Field{&C::of_kind, "of_kind"},   Field{&C::degrees_of_freedom, "degrees_of_freedom"},
-                    Field{&C::tau, "tau"},           Field{&C::bias, "bias"},
-                    Field{&C::rms, "rms"},           Field{&C::without, "without"},
-                    Field{&C::mean, "mean"},         Field{&C::single, "single"},
+  return std::tuple{Field{&C::path, "path"},
+                    Field{&C::kind, "kind"},
+                    Field{&C::packings, "packings"},
+                    Field{&C::model, "model"},
+                    Field{&C::quantity, "quantity"},
+                    Field{&C::rows, "rows"},
+                    Field{&C::of_kind, "of_kind"},
+                    Field{&C::degrees_of_freedom, "degrees_of_freedom"},
+                    Field{&C::tau, "tau"},
+                    Field{&C::bias, "bias"},
+                    Field{&C::bias_error, "bias_error"},
+                    Field{&C::rms, "rms"},
+                    Field{&C::without, "without"},
+                    Field{&C::mean, "mean"},
+                    Field{&C::single, "single"},
                     Field{&C::whole, "whole"}};
 }
 static_assert(tells_every_member<BandCoverage>());

@@ -5,7 +5,7 @@
 #   turns.*, spin.*     continuity in the angle of a turn, rotation, slopes through both
 #   rung.*              a rung that fails beside others
 #   bands.*             each rehearsed path against the bands of the others: share of rows whose mean of runs, or single
-#                       run, lies within; bias of the law there in units of w (docs/theory/bands.md), by path
+#                       run, lies within; bias of the law there in units of w (docs/theory/bands.md), by path, and its error
 #   few.*               coverage of intervals from two to ten packings, by simulation
 #   lie.*               what is wrong with data, each with its message (written to lies.txt)
 # --quick: 2000 random paths in place of 10,000, and few packings by the suite's study in place of the long one.
@@ -52,7 +52,8 @@ bands() {
     figure "bands.$rung.$quantity.single" "$single" "<=0.97"
   done < <(jq -r '.summaries[] | [.model, .quantity, .paths, .without, .mean, .single, .least_mean] | @tsv' "$out/bands/study.json")
   while read -r name; do figure "${name% *}" "${name##* }" stated; done \
-    < <(jq -r '.coverages[] | select(.model == "memory") | "bias.\(.path).\(.quantity) \(.bias)"' "$out/bands/study.json")
+    < <(jq -r '.coverages[] | select(.model == "memory") | "\(.path).\(.quantity)" as $of |
+               "bias.\($of) \(.bias)", "bias_error.\($of) \(.bias_error)"' "$out/bands/study.json")
 }
 
 few_packings() {

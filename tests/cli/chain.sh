@@ -109,7 +109,8 @@ diff <(jq .rehearsals rehearsed/parameters.json) <(jq .rehearsals refitted/param
   fail "--dem --rehearse: $(cat log)"
 "$grainlaw" study bands refitted -o bands >text || fail "study bands"
 (( $(LC_ALL=C.UTF-8 wc -L <text) <= 80 )) || fail "study bands is wider than 80 columns: $(cat text)"
-jq -e '(.summaries | length) >= 6 and .summaries[0].paths == 2' bands/study.json >/dev/null || fail "study bands: $(cat text)"
+jq -e '(.summaries | length) >= 6 and .summaries[0].paths == 2 and all(.coverages[]; .bias_error > 0)' bands/study.json >/dev/null ||
+  fail "study bands: $(cat text)"
 code=0
 "$grainlaw" predict out/parameters.json path.json -o bad --rehearse 2>err || code=$?
 [[ $code == 2 && ! -e bad ]] || fail "--rehearse without runs"
