@@ -4,6 +4,32 @@
 
 namespace grainlaw::dem {
 
+State tiled(const State& one, int tiles) {
+  const auto t = static_cast<std::size_t>(tiles);
+  const Packing& p = one.packing;
+  State all;
+  all.material = one.material;
+  Packing& q = all.packing;
+  resize(q, p.size() * t * t * t);
+  q.H = p.H * tiles;
+  const auto place = [&](double s, std::size_t tile) {
+    return (s - std::floor(s) + static_cast<double>(tile)) / tiles;
+  };
+  for (std::size_t copy = 0, to = 0; copy < t * t * t; ++copy) {
+    for (std::size_t i = 0; i < p.size(); ++i, ++to) {
+      q.radius[to] = p.radius[i];
+      q.mass[to] = p.mass[i];
+      q.sx[to] = place(p.sx[i], copy % t);
+      q.sy[to] = place(p.sy[i], copy / t % t);
+      q.sz[to] = place(p.sz[i], copy / t / t);
+      q.vx[to] = p.vx[i];
+      q.vy[to] = p.vy[i];
+      q.vz[to] = p.vz[i];
+    }
+  }
+  return all;
+}
+
 void account(State& state, double dt, const PassSums& sums) {
   const double h = dt / 2;
   state.ledger.W_box += h * (state.sums.box_power + sums.box_power);

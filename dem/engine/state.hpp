@@ -44,6 +44,10 @@ struct State {
   std::string digest;         ///< SHA-256 (hex) of the resolved spec that made the state; may be empty
 };
 
+/// The packing repeated `tiles` times along each edge of its cell, of the same material: large without being prepared
+/// large. Ids are new; accelerations are not computed yet.
+State tiled(const State& one, int tiles);
+
 // The energy account: where the energy of a simulation comes from and goes to, work of the box, losses in contacts and
 // to the background, by the trapezoidal rule over its steps, beside what it has.
 

@@ -22,6 +22,7 @@ constexpr double kBytesPerRecord = 2500;       // of run.json
 
 constexpr double kMeasured = 0.4;  // wall time of a measurement [s]
 constexpr std::int64_t kMeasuredSpheres = 10000;
+constexpr int kTiles = 2;
 constexpr double kMeasuredDensity = 0.72;
 
 double spheres(const PreparationOptions& o) { return static_cast<double>(o.packing.particles); }
@@ -43,14 +44,16 @@ double bytes_of(const PlannedRun& run) {
   return kBytesPerRecord + rows * kBytesPerRow + (1 + frames(*run.test)) * spheres_of(*run.test) * kBytesPerEnd;
 }
 
-/// A packing that is dense at once: the gas, shrunk and relaxed roughly.
+/// A packing that is dense at once: the gas, shrunk and relaxed roughly; a large one in periodic copies of an eighth.
 State dense_packing(const PreparationOptions& like, const EngineOptions& engine, const RunControl& control) {
   PackingOptions packing = like.packing;
   packing.particles = std::min(packing.particles, kMeasuredSpheres);
+  const bool large = packing.particles == kMeasuredSpheres;
+  if (large) packing.particles /= kTiles * kTiles * kTiles;
   State state = random_gas(packing, like.nu_gas, engine, control);
   scale_to_volume_fraction(state.packing, kMeasuredDensity);
   relax(state, engine, {1e-2, 400}, control);
-  return state;
+  return large ? tiled(state, kTiles) : state;
 }
 
 /// Steps per second of one run, times its spheres.

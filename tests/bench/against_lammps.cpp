@@ -117,7 +117,7 @@ int main(int argc, char** argv) try {
   CLI11_PARSE(app, argc, argv);
 
   for (const double nu : densities) {
-    const dem::State state = bench::tiled(bench::warmed_up(bench::packing_at(folder, particles, nu), warm_up), tiles);
+    const dem::State state = dem::tiled(bench::warmed_up(bench::packing_at(folder, particles, nu), warm_up), tiles);
     const std::size_t size = state.packing.size();
     dem::EngineOptions options;
     options.threads = cores;

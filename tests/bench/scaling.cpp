@@ -91,7 +91,7 @@ Pair compare_sizes(const dem::State& state, const dem::EngineOptions& options, i
   constexpr int kStepsOfATurn = 300;  // of one packing
   const int copies = tiles * tiles * tiles, steps_of_other = std::max(1, kStepsOfATurn / copies);
   bench::Sheared alone = bench::start_shear(state, options),
-                 other = bench::start_shear(bench::tiled(state, tiles), options);
+                 other = bench::start_shear(dem::tiled(state, tiles), options);
   bench::advance(alone, kStepsOfATurn);
   bench::advance(other, steps_of_other);
   Pair seconds;

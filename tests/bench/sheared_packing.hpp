@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -15,8 +14,6 @@
 namespace grainlaw::bench {
 
 inline constexpr double kRate = 138;  // [1/s]
-
-inline double wrapped(double s) { return s - std::floor(s); }
 
 /// At rest; prepared once and kept in `folder`.
 inline dem::State packing_at(const std::filesystem::path& folder, std::int64_t particles, double nu) {
@@ -78,33 +75,6 @@ inline dem::State warmed_up(const dem::State& state, int steps) {
   dem::State warm = shear.sim.take_state();
   for (auto* a : {&warm.ax, &warm.ay, &warm.az, &warm.ref_x, &warm.ref_y, &warm.ref_z}) a->clear();
   return warm;
-}
-
-/// The packing repeated `tiles` times along each axis: large without being prepared large.
-inline dem::State tiled(const dem::State& one, int tiles) {
-  dem::State all;
-  all.material = one.material;
-  const dem::Packing& p = one.packing;
-  const auto copies = static_cast<std::size_t>(tiles * tiles * tiles);
-  dem::resize(all.packing, p.size() * copies);
-  dem::Packing& q = all.packing;
-  q.H = p.H * tiles;
-  for (std::size_t k = 0, to = 0; k < copies; ++k) {
-    const auto t = static_cast<std::size_t>(tiles);
-    const Eigen::Vector3d offset(static_cast<double>(k % t), static_cast<double>(k / t % t),
-                                 static_cast<double>(k / t / t));
-    for (std::size_t i = 0; i < p.size(); ++i, ++to) {
-      q.radius[to] = p.radius[i];
-      q.mass[to] = p.mass[i];
-      q.sx[to] = (wrapped(p.sx[i]) + offset[0]) / tiles;
-      q.sy[to] = (wrapped(p.sy[i]) + offset[1]) / tiles;
-      q.sz[to] = (wrapped(p.sz[i]) + offset[2]) / tiles;
-      q.vx[to] = p.vx[i];
-      q.vy[to] = p.vy[i];
-      q.vz[to] = p.vz[i];
-    }
-  }
-  return all;
 }
 
 }  // namespace grainlaw::bench

@@ -116,6 +116,26 @@ TEST(Averages, InertialNumber) {
   EXPECT_NEAR(seen.inertial_number, std::sqrt(3.0) * 200 * 2.5e-3 * std::sqrt(2000 / P), 1e-11 * seen.inertial_number);
 }
 
+// Periodic copies in a sheared cell, of unwrapped places: the averages are those of one.
+TEST(Averages, OfCopiesAreThoseOfOne) {
+  scene::Draw draw(5);
+  State one = scene::random_state(60, 3, 0.8, scene::random_shape(1.5, 0.4, draw), draw);
+  scene::random_velocities(one.packing, 1e-2, draw);
+  for (std::size_t i = 0; i < one.packing.size(); i += 3) one.packing.sy[i] -= 4;
+  const auto seen = [](State state) {
+    const CellMotion motion = scene::at_rest(state);
+    return observe(scene::start(std::move(state)), motion, kNone);
+  };
+  const State eight = tiled(one, 2);
+  EXPECT_EQ(eight.packing.size(), 480u);
+  const Observation of_one = seen(one), of_eight = seen(eight);
+  const double rounding = scene::rounding(1e-13);
+  EXPECT_LE((of_eight.stress.tensor - of_one.stress.tensor).norm(), rounding * of_one.stress.tensor.norm());
+  EXPECT_LE((of_eight.fabric.tensor - of_one.fabric.tensor).norm(), rounding * of_one.fabric.tensor.norm());
+  EXPECT_NEAR(of_eight.nu, of_one.nu, 1e-14);
+  EXPECT_NEAR(of_eight.E_kin, 8 * of_one.E_kin, 1e-13 * of_eight.E_kin);
+}
+
 TEST(Averages, LedgerAndTimeAreTakenFromTheState) {
   const Pair pair;
   Simulation sim = pair.simulation();
