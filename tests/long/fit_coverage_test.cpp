@@ -67,14 +67,14 @@ const auto kNameOfStudy = [](const auto& study) {
 };
 
 INSTANTIATE_TEST_SUITE_P(Studies, CoverageModerated,
-                         ::testing::Values(CoverageStudy{300, 2, 0.9, 0.02, 1000000, fit::Loss::squares, 10},
-                                           CoverageStudy{300, 3, 0.9, 0.02, 1100000, fit::Loss::squares, 10},
-                                           CoverageStudy{300, 5, 0.9, 0.02, 1200000, fit::Loss::squares, 10},
-                                           CoverageStudy{300, 10, 0.9, 0.02, 1300000, fit::Loss::squares, 10},
-                                           CoverageStudy{300, 2, 0.9, 0.02, 1400000, fit::Loss::huber, 10},
-                                           CoverageStudy{300, 3, 0.9, 0.02, 1500000, fit::Loss::huber, 10},
-                                           CoverageStudy{300, 5, 0.9, 0.02, 1600000, fit::Loss::huber, 10},
-                                           CoverageStudy{300, 10, 0.9, 0.02, 1700000, fit::Loss::huber, 10}),
+                         ::testing::Values(CoverageStudy{300, 2, 0.9, 0.02, 1000000, fit::Loss::squares, 10, 1300000},
+                                           CoverageStudy{300, 3, 0.9, 0.02, 1100000, fit::Loss::squares, 10, 1300000},
+                                           CoverageStudy{300, 5, 0.9, 0.02, 1200000, fit::Loss::squares, 10, 1300000},
+                                           CoverageStudy{300, 10, 0.9, 0.02, 1300000, fit::Loss::squares, 10, 1300000},
+                                           CoverageStudy{300, 2, 0.9, 0.02, 1400000, fit::Loss::huber, 10, 1700000},
+                                           CoverageStudy{300, 3, 0.9, 0.02, 1500000, fit::Loss::huber, 10, 1700000},
+                                           CoverageStudy{300, 5, 0.9, 0.02, 1600000, fit::Loss::huber, 10, 1700000},
+                                           CoverageStudy{300, 10, 0.9, 0.02, 1700000, fit::Loss::huber, 10, 1700000}),
                          kNameOfStudy);
 
 INSTANTIATE_TEST_SUITE_P(

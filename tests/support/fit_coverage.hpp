@@ -40,7 +40,8 @@ struct CoverageStudy {
   double packing_scatter = 0;  ///< standard deviation of a packing's factors, relative
   std::uint64_t first_seed = 0;
   fit::Loss loss = fit::Loss::squares;
-  int priors = 0;  ///< moderated by so many priors in turn, each of many packings of the same kind; 0: not
+  int priors = 0;            ///< moderated by so many priors in turn, each of many packings of the same kind; 0: not
+  std::uint64_t others = 0;  ///< studies that share this number share their priors; 0: first_seed
 
   std::string name() const {
     return fmt::format("{}_packings{}{}{}{}", packings,
@@ -48,6 +49,8 @@ struct CoverageStudy {
                        packing_scatter > 0 ? fmt::format("_scatter_{:g}", packing_scatter) : "",
                        loss == fit::Loss::huber ? "_huber" : "", priors > 0 ? "_moderated" : "");
   }
+
+  std::uint64_t first_other() const { return others > 0 ? others : first_seed; }
 
   /// Likewise, of other data.
   CoverageStudy with(int other_packings, std::uint64_t other_first_seed) const {
@@ -58,37 +61,50 @@ struct CoverageStudy {
   }
 };
 
-/// The first seed of data of the same kind that are not judged, the `which`-th lot.
-inline std::uint64_t seed_of_others(const CoverageStudy& study, int which) {
-  return 1000000000 + 100 * study.first_seed + 10000 * static_cast<std::uint64_t>(which);
+/// Calls work(0), ..., work(n - 1) on all processors, the first ones first.
+template <class Work>
+void in_parallel(int n, Work work) {
+  std::atomic<int> next = 0;
+  std::vector<std::jthread> team;
+  for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t)
+    team.emplace_back([&] {
+      for (int i = next++; i < n; i = next++) work(i);
+    });
 }
 
-/// A fit to 64 other packings.
-template <class Fitted>
-fit::SizedLaw fit_to_many(const CoverageStudy& study, int which, Fitted fitted) {
-  return fitted(study.with(64, seed_of_others(study, which)), 0);
-}
+/// Of data of the same kind that are not judged.
+struct OtherPackings {
+  std::vector<fit::SizedLaw> many;         ///< fits to 64 packings each
+  std::vector<fit::VariancePrior> priors;  ///< by the first of these
+};
 
+/// `fits` fits to many, and the study's priors, as many packings as one would simulate once give them: 64, and 16 sets each of 2, 3
+/// and 5; `fitted` being a fit to set k of a study's data. One prior is itself off by chance (64 packings know a standard error to
+/// 9 %), the same way for all sets: its degrees of freedom speak of the mean over priors.
 template <class Fitted>
-fit::VariancePrior prior_of_study(const CoverageStudy& study, int which, Fitted fitted) {
-  const std::uint64_t others = seed_of_others(study, which);
-  const fit::SizedLaw many = fit_to_many(study, which, fitted);
-  std::vector<fit::SizedLaw> parts;
-  for (const int packings : {2, 3, 5}) {
-    const CoverageStudy few = study.with(packings, others + 1000 * static_cast<std::uint64_t>(packings));
-    for (int k = 0; k < 16; ++k) parts.push_back(fitted(few, k));
+OtherPackings other_packings(const CoverageStudy& study, int fits, Fitted fitted) {
+  constexpr std::array<int, 3> kFew{2, 3, 5};
+  constexpr int kSets = 16, kParts = kSets * static_cast<int>(kFew.size());
+  const auto seed = [&](int which) {
+    return 1000000000 + 100 * study.first_other() + 10000 * static_cast<std::uint64_t>(which);
+  };
+  OtherPackings others;
+  others.many.resize(static_cast<std::size_t>(fits));
+  std::vector<fit::SizedLaw> parts(static_cast<std::size_t>(study.priors * kParts));
+  in_parallel(fits + study.priors * kParts, [&](int job) {
+    if (job < fits) {
+      others.many[static_cast<std::size_t>(job)] = fitted(study.with(64, seed(job)), 0);
+      return;
+    }
+    const int part = job - fits, packings = kFew[static_cast<std::size_t>(part % kParts / kSets)];
+    const std::uint64_t first = seed(part / kParts) + 1000 * static_cast<std::uint64_t>(packings);
+    parts[static_cast<std::size_t>(part)] = fitted(study.with(packings, first), part % kSets);
+  });
+  for (int which = 0; which < study.priors; ++which) {
+    const auto first = parts.begin() + which * kParts;
+    others.priors.push_back(fit::variance_prior(others.many[static_cast<std::size_t>(which)], {first, first + kParts}));
   }
-  return fit::variance_prior(many, parts);
-}
-
-/// The priors that as many packings as one would simulate once give, `fitted` being a fit to set k of a study's data: each of
-/// 64 packings, and of 16 sets each of 2, 3 and 5. None of these data are judged by it. One prior is itself off by chance (64
-/// packings know a standard error to 9 %), the same way for all sets: its degrees of freedom speak of the mean over priors.
-template <class Fitted>
-std::vector<fit::VariancePrior> priors_of_study(const CoverageStudy& study, Fitted fitted) {
-  std::vector<fit::VariancePrior> priors;
-  for (int which = 0; which < study.priors; ++which) priors.push_back(prior_of_study(study, which, fitted));
-  return priors;
+  return others;
 }
 
 class RowNoise {
@@ -194,7 +210,7 @@ inline fit::SizedLaw fit_of_isotropic_laws(const CoverageStudy& study, int k) {
 }
 
 inline Coverage coverage_of_isotropic_laws(const CoverageStudy& study) {
-  const std::vector<fit::VariancePrior> priors = priors_of_study(study, fit_of_isotropic_laws);
+  const std::vector<fit::VariancePrior> priors = other_packings(study, study.priors, fit_of_isotropic_laws).priors;
   Coverage coverage;
   for (int k = 0; k < study.sets; ++k) {
     fit::SizedLaw found = fit_of_isotropic_laws(study, k);
@@ -308,17 +324,24 @@ class CompleteCalibration {
     return fitted(clean(study.packings), study.loss).law.parameters;
   }
 
-  /// What is found from many packings that differ: the mean over ten fits to 64 each, none of them in the study.
+  /// Ten fits to many others, and priors; made once for the studies that share them.
+  const OtherPackings& others(const CoverageStudy& study) const {
+    static std::map<std::pair<std::uint64_t, int>, OtherPackings> made;
+    const auto [at, fresh] = made.try_emplace({study.first_other(), study.priors});
+    if (fresh)
+      at->second = other_packings(study, 10, [&](const CoverageStudy& other, int k) { return fitted(other, k); });
+    return at->second;
+  }
+
+  /// What is found from many packings that differ: the mean over fits to others.
   LawParameters<double> of_many(const CoverageStudy& study) const {
-    constexpr int kFits = 10;
+    const std::vector<fit::SizedLaw>& many = others(study).many;
     LawParameters<double> mean;
-    std::array<double, kParameterCount> sum{};
-    for (int which = 0; which < kFits; ++which) {
-      const CalibratedLaw many =
-          fit_to_many(study, which, [&](const CoverageStudy& other, int k) { return fitted(other, k); }).law;
-      for (std::size_t i = 0; i < kParameterCount; ++i) sum[i] += many.estimates[i].value;
+    for (std::size_t i = 0; i < kParameterCount; ++i) {
+      double sum = 0;
+      for (const fit::SizedLaw& one : many) sum += one.law.estimates[i].value;
+      *fields(mean)[i] = sum / static_cast<double>(many.size());
     }
-    for (std::size_t i = 0; i < kParameterCount; ++i) *fields(mean)[i] = sum[i] / kFits;
     return mean;
   }
 
@@ -331,20 +354,12 @@ inline std::vector<CalibratedLaw> calibrations_of(const CoverageStudy& study) {
   const CompleteCalibration scene;
   const std::vector<TestRecord> clean = scene.clean(study.packings);
   std::vector<CalibratedLaw> found(static_cast<std::size_t>(study.sets));
-  const std::vector<fit::VariancePrior> priors =
-      priors_of_study(study, [&](const CoverageStudy& other, int k) { return scene.fitted(other, k); });
-  std::atomic<int> next = 0;
-  const auto work = [&] {
-    for (int k = next++; k < study.sets; k = next++) {
-      fit::SizedLaw one = CompleteCalibration::fitted(clean, study, k);
-      if (!priors.empty()) moderate(priors[static_cast<std::size_t>(k) % priors.size()], one.size, one.law);
-      found[static_cast<std::size_t>(k)] = one.law;
-    }
-  };
-  {
-    std::vector<std::jthread> team;
-    for (unsigned t = 0; t < std::thread::hardware_concurrency(); ++t) team.emplace_back(work);
-  }
+  const std::vector<fit::VariancePrior> none, &priors = study.priors > 0 ? scene.others(study).priors : none;
+  in_parallel(study.sets, [&](int k) {
+    fit::SizedLaw one = CompleteCalibration::fitted(clean, study, k);
+    if (!priors.empty()) moderate(priors[static_cast<std::size_t>(k) % priors.size()], one.size, one.law);
+    found[static_cast<std::size_t>(k)] = one.law;
+  });
   return found;
 }
 
