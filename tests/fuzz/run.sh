@@ -51,12 +51,13 @@ printf '%-14s %12s %9s %7s %9s %8s\n' reader executions per-s edges seconds find
 status=0
 for reader in "${wanted[@]}"; do
   scene=$temporary/$reader corpus=build/fuzz/corpus/$reader log=build/fuzz/findings/$reader.log
-  cp -r "$temporary/scene" "$scene"
-  mkdir -p "$corpus" "$scene/first"
+  new_scene() { rm -rf "$scene" && cp -r "$temporary/scene" "$scene" && mkdir "$scene/first"; }
+  new_scene
+  mkdir -p "$corpus"
   rm -f "$log"*
   start=$SECONDS code=0
   fuzz build/$preset "$limit" "$corpus" "$scene/first" >"$log" 2>&1 || code=1
-  if [[ $preset != fuzz ]]; then fuzz build/fuzz -runs=0 "$corpus" >"$log.sanitizers" 2>&1 || code=1; fi
+  if [[ $preset != fuzz ]]; then new_scene; fuzz build/fuzz -runs=0 "$corpus" >"$log.sanitizers" 2>&1 || code=1; fi
   executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
   rate=$(sed -n 's/^stat::average_exec_per_sec: *//p' "$log")
   edges=$(grep -ao 'cov: [0-9]*' "$log" | tail -1 | cut -c 6-)
