@@ -7,6 +7,7 @@
 
 #include "model/files/one_line.hpp"
 #include "model/files/schema.hpp"
+#include "model/files/whole_number.hpp"
 #include "model/vocabulary/error.hpp"
 #include "packing_prior_text.hpp"
 
@@ -46,7 +47,7 @@ VariancePrior prior_from_json(const Json& json, const std::string& name) {
     throw InvalidInput(fmt::format("{}: is no prior of grainlaw study prior: {}", name, one_line(why, 200)));
   };
   try {
-    prior.size = {json.at("packings"), json.at("spheres")};
+    prior.size = {whole_number<int>(json.at("packings")), json.at("spheres")};
     const std::vector<std::string> names = json.at("names");
     const Json &degrees = json.at("degrees_of_freedom"), &matrix = json.at("covariance");
     if (degrees.size() != names.size() || matrix.size() != names.size())

@@ -28,19 +28,6 @@ OrderedJson covariance_to_json(const CalibratedLaw& law) {
   return {{"names", names}, {"matrix", matrix}};
 }
 
-OrderedJson scatter_to_json(const PackingScatter& scatter) {
-  return {{"packings", scatter.packings},
-          {"degrees_of_freedom", scatter.degrees_of_freedom},
-          {"compression", number_or_null(scatter.compression)},
-          {"s_par", number_or_null(scatter.s_par)},
-          {"F_par", number_or_null(scatter.F_par)}};
-}
-
-PackingScatter scatter_from_json(const Json& object) {
-  return {object["packings"], object["degrees_of_freedom"], number_or_nan(object["compression"]),
-          number_or_nan(object["s_par"]), number_or_nan(object["F_par"])};
-}
-
 OrderedJson rehearsals_to_json(const std::vector<Rehearsal>& rehearsals) {
   OrderedJson list = OrderedJson::array();
   for (const Rehearsal& rehearsal : rehearsals) {
@@ -138,7 +125,7 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
     table[info.name] = entry;
   }
   document["covariance"] = covariance_to_json(law);
-  document["scatter"] = scatter_to_json(law.scatter);
+  document["scatter"] = fields_to_json(law.scatter);
   document["ranges"] = {{"nu", {law.range.nu_min, law.range.nu_max}},
                         {"eps_dev", {0.0, law.range.eps_dev_max}},
                         {"eps_vol", {0.0, law.range.eps_vol_max}},
@@ -189,7 +176,7 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
     throw InvalidInput(fmt::format("{}: {}", name, error.what()));
   }
   forget_unknown_fabric(law);
-  if (document.contains("scatter")) law.scatter = scatter_from_json(document["scatter"]);
+  if (document.contains("scatter")) read_fields(document["scatter"], law.scatter);
   const Json& ranges = document["ranges"];
   law.range.nu_min = ranges["nu"][0];
   law.range.nu_max = ranges["nu"][1];

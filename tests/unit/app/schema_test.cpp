@@ -148,6 +148,21 @@ TEST(SchemaCheck, DescribesEveryKey) {
     expect_described(schema(which), "");
 }
 
+void expect_bounded_integers(const Json& node, const std::string& place) {
+  if (!node.is_structured()) return;
+  if (node.is_object() && node.contains("type") && node["type"] == "integer" && !node.contains("enum")) {
+    EXPECT_TRUE(node.contains("minimum") && node.contains("maximum")) << place;
+  }
+  for (const auto& item : node.items()) expect_bounded_integers(item.value(), place + "." + item.key());
+}
+
+// What no integer of the program holds would be read as another number.
+TEST(SchemaCheck, BoundsEveryInteger) {
+  for (const Schema which : {Schema::spec, Schema::path, Schema::test, Schema::dataset, Schema::parameters,
+                             Schema::study, Schema::study_settings, Schema::plan, Schema::prior, Schema::mapping})
+    expect_bounded_integers(schema(which), std::to_string(static_cast<int>(which)));
+}
+
 TEST(SchemaCheck, KnowsTheWordsOfTheFit) {
   const Json& status =
       schema(Schema::parameters)["properties"]["parameters"]["additionalProperties"]["properties"]["status"]["enum"];

@@ -78,6 +78,16 @@ TEST_F(ParametersFileTest, WhatWasReadIsWrittenAgainByteForByte) {
   EXPECT_EQ(content(folder_ / "second.json"), content(folder_ / "first.json"));
 }
 
+// Found by the fuzzer: 3e9 packings were read as a negative number.
+TEST_F(ParametersFileTest, RefusesIntegersThatTheLawDoesNotHold) {
+  write_parameters(folder_ / "p.json", {testing::odd_law(), {}});
+  Json changed = read_json(folder_ / "p.json", JsonSource::own);
+  changed["scatter"]["packings"] = 3000000000;
+  write_json(folder_ / "changed.json", OrderedJson(changed));
+  const std::string why = refusal([&] { read_parameters(folder_ / "changed.json"); });
+  EXPECT_NE(why.find("changed.json: scatter.packings: got 3000000000"), std::string::npos) << why;
+}
+
 // Files without degrees of freedom, scatter, covariance, digest or word of convergence.
 TEST_F(ParametersFileTest, OlderOnesSayLess) {
   write_parameters(folder_ / "p.json", {testing::odd_law(), {}});
