@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxSegments = 10000;  // as in PATH
 constexpr double kMaxStrain = 100;
+constexpr double kSameStrain = 1e-14;    // changes of every component up to this are rounding and have no direction
 constexpr double kSameDirection = 1e-9;  // difference of unit directions that are taken for one
 
 /// Where the six components stand in a row; shears may be absent.
@@ -76,7 +77,7 @@ std::vector<PathSegment> segments_from_csv(const std::filesystem::path& file, do
       first = corner = before = strain;
       continue;
     }
-    if (strain == before) continue;
+    if ((strain - before).cwiseAbs().maxCoeff() <= kSameStrain) continue;
     if (const double here = nu * std::exp(-(strain - *first).trace()); !(here <= kMaxVolumeFraction)) {
       reader.refuse("strain_xx", fmt::format("the strain leads to a volume fraction of {:.4g}, beyond {}", here,
                                              kMaxVolumeFraction));

@@ -165,6 +165,12 @@ TEST_F(PathFiles, MeasuredStrainsBecomeSegments) {
   EXPECT_NEAR(end(0, 2), 0.02, 1e-15);
   EXPECT_NEAR(end(0, 0), 0, 1e-15) << "counted from the first row";
 
+  // Found by the fuzzer: a change of 5e-324 became an infinite direction; one of rounding was a turn.
+  put("m.csv", "strain_xx,strain_yy,strain_zz\n0,0,0\n5e-324,0,0\n0,0.001,0\n1e-17,0.001,-2e-18\n0,0.002,0\n");
+  const auto smooth = resolve(read_path(path).path);
+  ASSERT_EQ(smooth.size(), 1u);
+  EXPECT_NEAR(smooth[0].strain(smooth[0].length).tensor(1, 1), 0.002, 1e-15);
+
   const auto refused = [&](const std::string& csv) {
     put("m.csv", csv);
     return without_folder(refusal([&] { read_path(path); }));
