@@ -173,7 +173,7 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
     }
     if (document.contains("covariance")) read_covariance(document, law.covariance);
   } catch (const InvalidInput& error) {
-    throw InvalidInput(fmt::format("{}: {}", name, error.what()));
+    throw InvalidInput(fmt::format("{}: {}", name, one_line(error.what())));
   }
   forget_unknown_fabric(law);
   if (document.contains("scatter")) read_fields(document["scatter"], law.scatter);

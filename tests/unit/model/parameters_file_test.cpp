@@ -88,6 +88,16 @@ TEST_F(ParametersFileTest, RefusesIntegersThatTheLawDoesNotHold) {
   EXPECT_NE(why.find("changed.json: scatter.packings: got 3000000000"), std::string::npos) << why;
 }
 
+// Found by the fuzzer: what moves a terminal's cursor came through in the name of a parameter.
+TEST_F(ParametersFileTest, NamesUnknownParametersInOneLine) {
+  write_parameters(folder_ / "p.json", {testing::odd_law(), {}});
+  Json changed = read_json(folder_ / "p.json", JsonSource::own);
+  changed["parameters"]["pressure.p0\x7f"] = changed["parameters"]["pressure.p0"];
+  write_json(folder_ / "changed.json", OrderedJson(changed));
+  const std::string why = refusal([&] { read_parameters(folder_ / "changed.json"); });
+  EXPECT_NE(why.find("'pressure.p0\\x7f' is no parameter of the law"), std::string::npos) << why;
+}
+
 // Files without degrees of freedom, scatter, covariance, digest or word of convergence.
 TEST_F(ParametersFileTest, OlderOnesSayLess) {
   write_parameters(folder_ / "p.json", {testing::odd_law(), {}});
