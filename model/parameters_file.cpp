@@ -118,8 +118,8 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
     const ParameterInfo& info = parameter_table()[i];
     const Estimate& estimate = law.estimates[i];
     OrderedJson entry = estimate_to_json(estimate);
-    // the law's own value, so that what is predicted is what was fitted
-    if (estimate.status != Status::not_identified) entry["value"] = *values[i];
+    // the law's own value, so that what is predicted is what was fitted; forgotten where others of its group are not known
+    if (estimate.status != Status::not_identified && !std::isnan(*values[i])) entry["value"] = *values[i];
     entry["symbol"] = info.symbol;
     entry["equation"] = info.equation;
     table[info.name] = entry;

@@ -19,7 +19,7 @@ class ParametersFileTest : public testing::TemporaryFolder {};
 TEST_F(ParametersFileTest, IsReadBackBitForBit) {
   const CalibratedLaw c = testing::odd_law();
   write_parameters(folder_ / "parameters.json", {c, {{"command", "test"}}});
-  const ParametersFile read = read_parameters(folder_ / "parameters.json");
+  ParametersFile read = read_parameters(folder_ / "parameters.json");
   testing::expect_same(c, read.law);
   EXPECT_EQ(read.law.dataset_digest, std::string(64, 'b'));
   const Json file = read_json(folder_ / "parameters.json", JsonSource::own);
@@ -55,7 +55,7 @@ TEST_F(ParametersFileTest, DoubtfulParametersAreRefused) {
   EXPECT_NE(message([](Json& j) { j["ranges"]["nu"] = {0.7}; }).find("ranges.nu"), std::string::npos);
   EXPECT_NE(message([](Json& j) { j.erase("coupling"); }).find("misses the key 'coupling'"), std::string::npos);
 
-  const ParametersFile read = read_parameters(folder_ / "p.json");
+  ParametersFile read = read_parameters(folder_ / "p.json");
   EXPECT_EQ(refusal([&] { require_parameters(read.law, Rung::evolution, "p.json"); }),
             "accepted");  // single coupling reads a0
   ParametersFile energy = read;
@@ -86,6 +86,20 @@ TEST_F(ParametersFileTest, RefusesIntegersThatTheLawDoesNotHold) {
   write_json(folder_ / "changed.json", OrderedJson(changed));
   const std::string why = refusal([&] { read_parameters(folder_ / "changed.json"); });
   EXPECT_NE(why.find("changed.json: scatter.packings: got 3000000000"), std::string::npos) << why;
+}
+
+// Found by the fuzzer: one of F_max's parameters is not known, so the law forgets the others; what is written keeps them.
+TEST_F(ParametersFileTest, KeepsWhatTheLawForgets) {
+  CalibratedLaw law = testing::odd_law();
+  const std::size_t limit = parameter_index("fabric_max.Q_limit"), Q_c = parameter_index("fabric_max.Q_c");
+  law.estimates[limit] = {std::nan(""), std::nan(""), Status::not_identified, ""};
+  law.estimates[Q_c] = {0.17, std::nan(""), Status::fitted, ""};
+  *fields(law.parameters)[Q_c] = 0.17;
+  write_parameters(folder_ / "first.json", {law, {}});
+  ParametersFile read = read_parameters(folder_ / "first.json");
+  EXPECT_TRUE(std::isnan(*fields(read.law.parameters)[Q_c]));
+  write_parameters(folder_ / "second.json", read);
+  EXPECT_EQ(content(folder_ / "second.json"), content(folder_ / "first.json"));
 }
 
 // Found by the fuzzer: what moves a terminal's cursor came through in the name of a parameter.
@@ -136,7 +150,7 @@ TEST_F(ParametersFileTest, OlderOnesHaveNoMemoryRung) {
   for (const int version : {1, 2, 3}) {
     old["format_version"] = version;
     write_json(folder_ / "old.json", OrderedJson(old));
-    const ParametersFile read = read_parameters(folder_ / "old.json");
+    ParametersFile read = read_parameters(folder_ / "old.json");
     for (std::size_t i = 0; i < kParameterCount; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const bool memory = std::string(parameter_table()[i].name).starts_with("memory.");
