@@ -12,20 +12,18 @@ State tiled(const State& one, int tiles) {
   Packing& q = all.packing;
   resize(q, p.size() * t * t * t);
   q.H = p.H * tiles;
+  const std::size_t n = p.size();
+  for (const auto same : {&Packing::radius, &Packing::mass, &Packing::vx, &Packing::vy, &Packing::vz}) {
+    for (std::size_t i = 0; i < q.size(); ++i) (q.*same)[i] = (p.*same)[i % n];
+  }
   const auto place = [&](double s, std::size_t tile) {
     return (s - std::floor(s) + static_cast<double>(tile)) / tiles;
   };
-  for (std::size_t copy = 0, to = 0; copy < t * t * t; ++copy) {
-    for (std::size_t i = 0; i < p.size(); ++i, ++to) {
-      q.radius[to] = p.radius[i];
-      q.mass[to] = p.mass[i];
-      q.sx[to] = place(p.sx[i], copy % t);
-      q.sy[to] = place(p.sy[i], copy / t % t);
-      q.sz[to] = place(p.sz[i], copy / t / t);
-      q.vx[to] = p.vx[i];
-      q.vy[to] = p.vy[i];
-      q.vz[to] = p.vz[i];
-    }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const std::size_t tile = i / n;
+    q.sx[i] = place(p.sx[i % n], tile % t);
+    q.sy[i] = place(p.sy[i % n], tile / t % t);
+    q.sz[i] = place(p.sz[i % n], tile / t / t);
   }
   return all;
 }
