@@ -19,7 +19,7 @@ class ParametersFileTest : public testing::TemporaryFolder {};
 TEST_F(ParametersFileTest, IsReadBackBitForBit) {
   const CalibratedLaw c = testing::odd_law();
   write_parameters(folder_ / "parameters.json", {c, {{"command", "test"}}});
-  ParametersFile read = read_parameters(folder_ / "parameters.json");
+  const ParametersFile read = read_parameters(folder_ / "parameters.json");
   testing::expect_same(c, read.law);
   EXPECT_EQ(read.law.dataset_digest, std::string(64, 'b'));
   const Json file = read_json(folder_ / "parameters.json", JsonSource::own);
@@ -55,7 +55,7 @@ TEST_F(ParametersFileTest, DoubtfulParametersAreRefused) {
   EXPECT_NE(message([](Json& j) { j["ranges"]["nu"] = {0.7}; }).find("ranges.nu"), std::string::npos);
   EXPECT_NE(message([](Json& j) { j.erase("coupling"); }).find("misses the key 'coupling'"), std::string::npos);
 
-  ParametersFile read = read_parameters(folder_ / "p.json");
+  const ParametersFile read = read_parameters(folder_ / "p.json");
   EXPECT_EQ(refusal([&] { require_parameters(read.law, Rung::evolution, "p.json"); }),
             "accepted");  // single coupling reads a0
   ParametersFile energy = read;
@@ -150,7 +150,7 @@ TEST_F(ParametersFileTest, OlderOnesHaveNoMemoryRung) {
   for (const int version : {1, 2, 3}) {
     old["format_version"] = version;
     write_json(folder_ / "old.json", OrderedJson(old));
-    ParametersFile read = read_parameters(folder_ / "old.json");
+    const ParametersFile read = read_parameters(folder_ / "old.json");
     for (std::size_t i = 0; i < kParameterCount; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const bool memory = std::string(parameter_table()[i].name).starts_with("memory.");
