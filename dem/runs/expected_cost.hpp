@@ -34,8 +34,8 @@ ExpectedCost expected_cost(const std::vector<PlannedTest>& tests, const std::fil
 ExpectedCost expected_cost(const TestFile& test, const std::filesystem::path& output);
 
 /// Particle-steps that this machine takes per second now on `threads` threads together, one packing on each: measured for
-/// about 0.4 s on packings like `like` (of 10000 spheres at most) that shear at a volume fraction of 0.72. Throws
-/// Interrupted.
+/// about 0.4 s on packings like `like` (of 10000 spheres at most, large ones as periodic copies) that shear at a volume
+/// fraction of 0.72. Throws Interrupted.
 double measured_rate(const PreparationOptions& like, int threads, const std::stop_token& stop);
 
 }  // namespace grainlaw::dem

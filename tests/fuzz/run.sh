@@ -47,11 +47,12 @@ fuzz() { # BUILD_FOLDER argument...
     -artifact_prefix="build/fuzz/findings/$reader-"
 }
 
+new_scene() { rm -rf "$scene" && cp -r "$temporary/scene" "$scene" && mkdir "$scene/first"; }
+
 printf '%-14s %12s %9s %7s %9s %8s\n' reader executions per-s edges seconds findings
 status=0
 for reader in "${wanted[@]}"; do
   scene=$temporary/$reader corpus=build/fuzz/corpus/$reader log=build/fuzz/findings/$reader.log
-  new_scene() { rm -rf "$scene" && cp -r "$temporary/scene" "$scene" && mkdir "$scene/first"; }
   new_scene
   mkdir -p "$corpus"
   rm -f "$log"*
