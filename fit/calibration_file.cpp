@@ -143,7 +143,7 @@ OrderedJson description_to_json(const Description& d) {
 
 void write_calibration(const std::filesystem::path& file, const Calibration& calibration,
                        const CalibrationOptions& options, const ModeComparison& modes, const OrderedJson& provenance) {
-  OrderedJson document;
+  OrderedJson document = OrderedJson::object();
   document["format"] = "grainlaw calibration";
   document["format_version"] = 1;
   document["coupling"] = to_string(calibration.law.coupling);

@@ -82,7 +82,7 @@ void read_covariance(const Json& document, Eigen::MatrixXd& covariance) {
 
 OrderedJson estimate_to_json(const Estimate& estimate) {
   const bool has_value = estimate.status != Status::not_identified;
-  OrderedJson object;
+  OrderedJson object = OrderedJson::object();
   object["value"] = has_value ? number_or_null(estimate.value) : OrderedJson(nullptr);
   object["standard_error"] = has_value ? number_or_null(estimate.standard_error) : OrderedJson(nullptr);
   if (!has_value || !std::isinf(estimate.degrees_of_freedom))  // without the key: infinite
@@ -108,7 +108,7 @@ Estimate estimate_from_json(const Json& object) {
 void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters) {
   const CalibratedLaw& law = parameters.law;
   const auto values = fields(law.parameters);
-  OrderedJson document;
+  OrderedJson document = OrderedJson::object();
   document["format"] = "grainlaw parameters";
   document["format_version"] = kVersion;
   document["coupling"] = to_string(law.coupling);

@@ -158,7 +158,7 @@ void write_prediction(const fs::path& folder, const PredictionFolder& content) {
                 {"dataset_digest", content.dem->digest},
                 {"comparisons", fields_to_json(content.comparisons)}});
   }
-  OrderedJson document;
+  OrderedJson document = OrderedJson::object();
   document["format"] = "grainlaw prediction";
   document["format_version"] = 1;
   document["name"] = content.name;

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 struct Simulation {
   Series series;
   std::vector<std::string> warnings;
-  OrderedJson summary;
+  OrderedJson summary = OrderedJson::object();
 };
 
 /// grainlaw.Calibration.
@@ -35,7 +35,7 @@ struct Calibration {
   std::shared_ptr<Law> law;
   std::shared_ptr<Dataset> dataset;
   std::vector<std::string> warnings;
-  OrderedJson summary;
+  OrderedJson summary = OrderedJson::object();
   fs::path folder;
 };
 
@@ -95,7 +95,7 @@ Calibration calibrate(const py::object& spec, const py::object& dataset, const p
   const fs::path from = file_or_none(dataset, "dataset"), folder = file_of(output, "output");
   const bool no_prior = py::isinstance<py::str>(fit_as.prior) && text_of(fit_as.prior, "prior") == "none";
   const fs::path prior = no_prior ? fs::path() : file_or_none(fit_as.prior, "prior");
-  OrderedJson summary;
+  OrderedJson summary = OrderedJson::object();
   auto result = result_of(wishes, [&](const Execution& execution) {
     chain::CalibrationInput input = chain::calibration_input(read, name, from);
     fit::CalibrationOptions options = chain::fit_options_of(input, execution);

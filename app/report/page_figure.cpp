@@ -53,7 +53,9 @@ std::string figure_data(const Figure& figure, const RenderedFigure& rendered) {
                                    {"x", arrays.index_of(series.x, frame.x.logarithmic)},
                                    {"y", arrays.index_of(series.y, frame.y.logarithmic)}};
       if (!series.y_error.empty()) drawn["error"] = arrays.index_of(series.y_error, false);
-      for (const auto& band : series.bands) drawn["bands"].push_back(arrays.index_of(band, false));
+      auto bands = nlohmann::ordered_json::array();
+      for (const auto& band : series.bands) bands.push_back(arrays.index_of(band, false));
+      if (!bands.empty()) drawn["bands"] = std::move(bands);
       const auto toggle = std::find(rendered.toggles.begin(), rendered.toggles.end(), series.toggle);
       if (toggle != rendered.toggles.end()) drawn["toggle"] = toggle - rendered.toggles.begin();
       entry["series"].push_back(drawn);

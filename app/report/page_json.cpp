@@ -54,7 +54,9 @@ OrderedJson json_of(const Table& table) {
 OrderedJson json_of(const Series& series) {
   OrderedJson json{{"label", to_plain(series.label)}, {"x", json_numbers(series.x)}, {"y", json_numbers(series.y)}};
   if (!series.y_error.empty()) json["standard_error"] = json_numbers(series.y_error);
-  for (const auto& band : series.bands) json["bands"].push_back(json_numbers(band));
+  OrderedJson bands = OrderedJson::array();
+  for (const auto& band : series.bands) bands.push_back(json_numbers(band));
+  if (!bands.empty()) json["bands"] = std::move(bands);
   if (!series.toggle.empty()) json["toggle"] = series.toggle;
   return json;
 }

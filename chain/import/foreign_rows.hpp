@@ -33,8 +33,8 @@ struct ForeignRows {
   std::vector<ColumnUse> columns;
   std::vector<std::string> notes;  ///< what else was taken as given, e.g. signs that were evident
   ExtraColumns extra;
-  OrderedJson provenance;              ///< files with their digests, and how they were read
-  std::optional<PackingInfo> packing;  ///< where the files say it themselves; none: the mapping's
+  OrderedJson provenance = OrderedJson::object();  ///< files with their digests, and how they were read
+  std::optional<PackingInfo> packing;              ///< where the files say it themselves; none: the mapping's
 };
 
 }  // namespace grainlaw::chain

@@ -183,6 +183,7 @@ Dataset write_imported(const Mapping& mapping, const std::vector<ForeignTest>& f
   dataset.provenance = provenance(execution);
   dataset.provenance["source"] = mapping.source;
   dataset.provenance["mapping"] = {{"file", mapping.name}, {"sha256", mapping.sha256}};
+  dataset.provenance["tests"] = Json::object();
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const TestRecord& record = tests[i].record;
     write_series(output / (record.name + ".csv"), record.rows);

@@ -25,7 +25,7 @@ std::vector<ForeignTest> read_foreign(const Mapping& mapping, const Execution& e
 struct ImportedTest {
   TestRecord record;
   std::vector<std::string> says;  ///< the path and how far rows were from it, in words
-  OrderedJson provenance;
+  OrderedJson provenance = OrderedJson::object();
 };
 
 /// The test's path, given or found, with the rows on it. Throws InvalidInput naming file, row and column for whatever our own

@@ -16,9 +16,9 @@ PrecisionTarget read_target(double error, const std::filesystem::path& path, con
                             double max_seconds);
 
 struct TargetCalibration {
-  TargetRun run;         ///< pilot, candidates, rounds, outcome
-  dem::Spec planned;     ///< of the last round
-  OrderedJson document;  ///< what plan.json holds
+  TargetRun run;                                 ///< pilot, candidates, rounds, outcome
+  dem::Spec planned;                             ///< of the last round
+  OrderedJson document = OrderedJson::object();  ///< what plan.json holds
 };
 
 /// Reaches for `target` in the frame of `spec` (material, size distribution, tests); then the tests of other roles are run

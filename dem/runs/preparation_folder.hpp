@@ -43,7 +43,7 @@ class PreparationFolder {
 
   std::filesystem::path folder_;
   std::string key_;
-  OrderedJson progress_;
+  OrderedJson progress_ = OrderedJson::object();
 };
 
 }  // namespace grainlaw::dem

@@ -27,7 +27,7 @@ Path unloading_branch(const PreparationOptions& options) {
 
 /// Last row of a series: what most want to see first.
 OrderedJson end_values(const Observation& row) {
-  OrderedJson values;
+  OrderedJson values = OrderedJson::object();
   for (const auto& column : columns_of<Observation>()) {
     for (const char* wanted : {"time", "eps_vol", "eps_dev", "nu", "P_star", "s_dev", "F_v", "F_dev", "C_star",
                                "rattler_fraction", "energy_residual"}) {

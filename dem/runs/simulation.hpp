@@ -12,9 +12,9 @@
 namespace grainlaw::dem {
 
 struct SimulationResult {
-  std::vector<Observation> rows;      ///< the series; of a preparation that of its unloading branch
-  std::vector<std::string> warnings;  ///< of the run
-  OrderedJson summary;                ///< what simulation.json holds
+  std::vector<Observation> rows;                ///< the series; of a preparation that of its unloading branch
+  std::vector<std::string> warnings;            ///< of the run
+  OrderedJson summary = OrderedJson::object();  ///< what simulation.json holds
 };
 
 /// Runs `test` unless `output`/runs has it, and copies its series and states to `output`, with simulation.json and, of a

@@ -101,7 +101,7 @@ void collect_kept(Spec& spec) {
 }
 
 OrderedJson test_to_json(const TestRequest& test) {
-  OrderedJson object;
+  OrderedJson object = OrderedJson::object();
   object["name"] = test.name;
   if (!test.mode.empty()) object["mode"] = test.mode;
   object["branch"] = to_string(test.branch);

@@ -128,7 +128,7 @@ void write_dataset_index(const fs::path& folder, Dataset& dataset) {
     tests.push_back(object);
   }
   dataset.digest = digest_of(dataset);
-  OrderedJson document;
+  OrderedJson document = OrderedJson::object();
   document["format"] = "grainlaw dataset";
   document["format_version"] = 1;
   document["digest"] = dataset.digest;

@@ -29,7 +29,7 @@ double peak_memory_megabytes() {
 std::string version_text() { return fmt::format("grainlaw {} ({})", build_info::version, build_info::git_revision); }
 
 OrderedJson provenance(const std::string& command, int threads, const Stopwatch& stopwatch) {
-  OrderedJson object;
+  OrderedJson object = OrderedJson::object();
   object["grainlaw"] = std::string(build_info::version);
   object["git_revision"] = std::string(build_info::git_revision);
   object["engine_version"] = kEngineVersion;

@@ -10,8 +10,10 @@
 
 namespace grainlaw {
 
-using Json = nlohmann::json;                 ///< keys sorted: dump() is the canonical form that digests are taken of
-using OrderedJson = nlohmann::ordered_json;  ///< keys in the order of writing: what files are written from
+using Json = nlohmann::json;  ///< keys sorted: dump() is the canonical form that digests are taken of
+/// Keys in the order of writing: what files are written from. Begins as OrderedJson::object() or array(): version 3.11.2 cannot
+/// destroy a null that was about to become one when memory ran out.
+using OrderedJson = nlohmann::ordered_json;
 
 inline constexpr std::size_t kMaxJsonBytes = 64u << 20;  ///< larger documents are refused before parsing [byte]
 inline constexpr int kMaxJsonDepth = 32;                 ///< deeper nesting is refused while parsing

@@ -77,7 +77,7 @@ std::vector<Condition> conditions_from(const Json& free) {
 }
 
 OrderedJson conditions_to_json(const std::vector<Condition>& conditions) {
-  OrderedJson object;
+  OrderedJson object = OrderedJson::object();
   for (const Condition& condition : conditions)
     object[free_name(condition)] = {{"quantity", to_string(condition.quantity)}, {"rate", condition.rate}};
   return object;
@@ -164,7 +164,7 @@ Path path_from_json(const Json& document, const std::string& name, const std::st
 OrderedJson segments_to_json(const std::vector<PathSegment>& segments) {
   OrderedJson array = OrderedJson::array();
   for (const PathSegment& segment : segments) {
-    OrderedJson object;
+    OrderedJson object = OrderedJson::object();
     if (segment.mode != Mode::tensor) object["mode"] = to_string(segment.mode);
     if (segment.spin.isZero(0))
       object["rate_tensor"] = matrix_to_json(segment.direction.tensor);
@@ -178,7 +178,7 @@ OrderedJson segments_to_json(const std::vector<PathSegment>& segments) {
 }
 
 OrderedJson path_to_json(const Path& path) {
-  OrderedJson object;
+  OrderedJson object = OrderedJson::object();
   object["initial"] = {{"nu", path.nu}, {"branch", to_string(path.branch)}};
   object["segments"] = segments_to_json(path.segments);
   return object;

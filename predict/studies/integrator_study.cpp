@@ -39,19 +39,16 @@ std::vector<BatchTime> time_batch(const IntegratorStudy& study, const Execution&
 }
 
 OrderedJson values_to_json(const LawParameters<double>& parameters) {
-  OrderedJson values;
+  OrderedJson values = OrderedJson::object();
   const auto all = fields(parameters);
   for (std::size_t i = 0; i < kParameterCount; ++i) values[parameter_table()[i].name] = *all[i];
   return values;
 }
 
 OrderedJson point_to_json(const WorkPoint& point) {
-  return {{"integrator", to_string(point.integrator)},
-          {"accuracy", point.accuracy},
-          {"error", number_or_null(point.error)},
-          {"rhs_evaluations", point.rhs_evaluations},
-          {"steps", point.steps},
-          {"microseconds", point.microseconds}};
+  return {
+      {"integrator", to_string(point.integrator)}, {"accuracy", point.accuracy}, {"error", number_or_null(point.error)},
+      {"rhs_evaluations", point.rhs_evaluations},  {"steps", point.steps},       {"microseconds", point.microseconds}};
 }
 
 OrderedJson panel_to_json(const WorkPrecision& study) {
@@ -95,8 +92,8 @@ IntegratorStudy published_law_study() {
 void measure(IntegratorStudy& study, const Execution& execution) {
   for (const StudyPath& path : study_paths(study.parameters)) {
     execution.watch.log("study of " + path.name);
-    study.panels.push_back(measure_work(path, study.parameters, Rung::evolution, study.coupling, study.repeats,
-                                        {{}, execution.stop}));
+    study.panels.push_back(
+        measure_work(path, study.parameters, Rung::evolution, study.coupling, study.repeats, {{}, execution.stop}));
   }
   study.batch = time_batch(study, execution);
 }

@@ -122,6 +122,10 @@ for name in dem/utils.hpp app/string_utils.cpp model/common.hpp tests/helpers.hp
   expect check_files.sh "$name: name it after"
 done
 
+clean_tree
+echo 'OrderedJson document;' >>"$tree/fit/calibrate.cpp"
+expect check_files.sh 'begin it as OrderedJson::object'
+
 # sow_text PAGE TEXT PATTERN: adds a line to a page.
 sow_text() {
   clean_tree

@@ -3,7 +3,7 @@
 # that says what failed, nothing half under a final name; then the same command ends with the same digits.
 # POINTS of them (default 16), spread evenly over kinds, steps and calls; where there are enough, one at each place that calls,
 # told apart by its callers; not memory under HDF5 1.10, which then writes where it may not. At one point in six all later
-# calls fail, too. STEPS and KINDS: only these.
+# calls fail, too. STEPS and KINDS: only these; FIRST: from that one on, so that a long campaign is made in pieces.
 . "$GRAINLAW_SOURCE_DIR/tests/survival/chain_scene.bash"
 library=$GRAINLAW_BUILD_DIR/tests/libfail_once.so
 [[ -e $library ]] || { echo "no $library in this build: skipped" >&2; exit 77; }
@@ -36,7 +36,7 @@ done | awk -v few=$((points / 50 + 2)) '
   grep -E "^[^ ]+ (${kinds// /|}) " | grep -v "^vtkhdf-export alloc " | sort -k 2,2 -k 1,1 -k 3,3n |
   awk '{ print $0, "once" } NR % 5 == 3 { print $0, "on" }' >candidates
 awk -v points="$points" -v all="$(wc -l <candidates)" 'int(NR * points / all) > int((NR - 1) * points / all)' candidates >thinned
-for step in "${steps[@]}"; do grep "^$step " thinned || true; done >chosen
+for step in "${steps[@]}"; do grep "^$step " thinned || true; done | tail -n "+${FIRST:-1}" >chosen
 
 # One process for each step that loads the libraries; children of it run the command.
 serve() { # STEP
