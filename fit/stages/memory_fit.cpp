@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
 #include "fit/stages/evolution_fit.hpp"
@@ -16,7 +17,7 @@ namespace {
 constexpr std::array kFree{"memory.G",   "memory.alpha", "memory.k",   "memory.lambda",
                            "memory.chi", "memory.kappa", "memory.c_F", "memory.a2"};
 constexpr std::size_t kVolumetric = 2;
-constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number
+constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number, chance aside
 constexpr double kWindowRounding = 1e-9;
 
 bool constant_volume(const Trajectory& t) { return std::abs(t.direction.dx) <= 1e-12; }
@@ -82,16 +83,24 @@ bool lag_may_be_none(const StageFit& fit) {
   return false;
 }
 
+/// Lower end of the 95 % interval of a standard error, over it: with two packings an error is chance by a factor of two.
+double least_of_error(double degrees_of_freedom) {
+  return std::sqrt(degrees_of_freedom / boost::math::quantile(boost::math::chi_squared(degrees_of_freedom), 0.975));
+}
+
 void withdraw_vague(StageFit& fit) {
   const bool may_not_lag = lag_may_be_none(fit);
   for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
     const std::string name = fit.stage.estimates[k].name;
-    const double value = fit.stage.estimates[k].estimate.value, error = fit.stage.estimates[k].estimate.standard_error;
+    const Estimate& e = fit.stage.estimates[k].estimate;
     const bool may_be_vague = name == "memory.chi" || name == "memory.kappa" ||  // both may be none
                               (name == "memory.lambda" && may_not_lag);
-    if (may_be_vague || !(error > kVagueParameter * std::abs(value))) continue;
+    const double relative = e.standard_error / std::abs(e.value);
+    if (may_be_vague || !(relative > kVagueParameter) ||
+        !(relative * least_of_error(e.degrees_of_freedom) > kVagueParameter))
+      continue;
     const bool volumetric = k >= kFree.size() - kVolumetric;
-    fit.mark_not_identified(name, fmt::format("its error is {:.2g} of its value; ", error / std::abs(value)) +
+    fit.mark_not_identified(name, fmt::format("its error is {:.2g} of its value; ", relative) +
                                       (volumetric ? kChangeTheVolume : "add seeds and lower densities"));
   }
 }

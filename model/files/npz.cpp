@@ -5,6 +5,7 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <memory>
 #include <new>
@@ -24,9 +25,9 @@ struct Member {
   std::string name, bytes;
 };
 
-/// What libzip says of memory is nothing that is wrong with the file.
+/// What libzip says of memory is nothing that is wrong with the file; where it forgets why it failed, errno, 0 before, remembers.
 void throw_without_memory(const zip_error_t& error) {
-  if (error.zip_err == ZIP_ER_MEMORY) throw std::bad_alloc();
+  if (error.zip_err == ZIP_ER_MEMORY || errno == ENOMEM) throw std::bad_alloc();
 }
 
 class Archive {
@@ -34,6 +35,7 @@ class Archive {
   Archive(std::string_view bytes, const std::string& name) : name_(name) {
     zip_error_t error;
     zip_error_init(&error);
+    errno = 0;
     zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
     zip_.reset(source == nullptr ? nullptr : zip_open_from_source(source, ZIP_RDONLY | ZIP_CHECKCONS, &error));
     const std::string reason = zip_error_strerror(&error);
@@ -71,6 +73,7 @@ class Archive {
     const std::string file = stat.name;
     if (!file.ends_with(".npy")) refuse(fmt::format("'{}' is no .npy", one_line(file, 60)));
     if (stat.size > most) refuse(fmt::format("its arrays are larger than {} MB", kMaxForeignBytes >> 20));
+    errno = 0;
     const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> in(zip_fopen_index(zip_.get(), index, 0), zip_fclose);
     if (!in) {
       throw_without_memory(*zip_get_error(zip_.get()));
