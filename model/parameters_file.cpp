@@ -105,7 +105,7 @@ Estimate estimate_from_json(const Json& object) {
   return estimate;
 }
 
-void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters) {
+OrderedJson parameters_to_json(const ParametersFile& parameters) {
   const CalibratedLaw& law = parameters.law;
   const auto values = fields(law.parameters);
   OrderedJson document = OrderedJson::object();
@@ -133,12 +133,10 @@ void write_parameters(const std::filesystem::path& file, const ParametersFile& p
   if (!law.rehearsals.empty()) document["rehearsals"] = rehearsals_to_json(law.rehearsals);
   if (!law.dataset_digest.empty()) document["dataset_digest"] = law.dataset_digest;
   if (!parameters.provenance.is_null()) document["provenance"] = OrderedJson(parameters.provenance);
-  write_json(file, document);
+  return document;
 }
 
-ParametersFile read_parameters(const std::filesystem::path& file) {
-  const std::string name = one_line(file.string(), 200);
-  const Json document = read_json(file, JsonSource::own);
+ParametersFile parameters_from_json(const Json& document, const std::string& name) {
   check_schema(document, Schema::parameters, name);
   ParametersFile result;
   CalibratedLaw& law = result.law;
@@ -189,6 +187,14 @@ ParametersFile read_parameters(const std::filesystem::path& file) {
   law.dataset_digest = document.value("dataset_digest", "");
   result.provenance = document.value("provenance", Json());
   return result;
+}
+
+void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters) {
+  write_json(file, parameters_to_json(parameters));
+}
+
+ParametersFile read_parameters(const std::filesystem::path& file) {
+  return parameters_from_json(read_json(file, JsonSource::own), one_line(file.string(), 200));
 }
 
 }  // namespace grainlaw

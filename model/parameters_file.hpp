@@ -13,6 +13,11 @@ struct ParametersFile {
   Json provenance;  ///< who made it, when and from what; null when not said
 };
 
+OrderedJson parameters_to_json(const ParametersFile& parameters);
+
+/// `name` stands for the document in messages. Throws InvalidInput naming key and value.
+ParametersFile parameters_from_json(const Json& document, const std::string& name);
+
 void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters);
 
 /// Throws InvalidInput naming file and key. Parameters without value keep the table's start and must not be read.

@@ -310,7 +310,17 @@ void add_law(py::module_& module) {
       .def("predict_batch", &predicted_batch, py::arg("strain"), py::arg("nu"), py::arg("model") = py::none(),
            py::kw_only(), py::arg("accuracy") = 1e-8, py::arg("threads") = py::none(),
            "The law along many strain histories, from arrays of (paths, steps, 6) and (paths,).")
-      .def("__repr__", [](const Law& self) { return fmt::format("<CalibratedLaw {}>", self.name); });
+      .def("__repr__", [](const Law& self) { return fmt::format("<CalibratedLaw {}>", self.name); })
+      .def(py::pickle(
+          [](const Law& self) {
+            return py::make_tuple(json_text(parameters_to_json({self.law, {}})), py::bytes(self.file.string()),
+                                  self.name);
+          },
+          [](const py::tuple& state) {
+            const Json document = parse_json(state[0].cast<std::string>(), "pickled law", JsonSource::own);
+            return std::make_shared<Law>(parameters_from_json(document, "pickled law").law,
+                                         fs::path(state[1].cast<std::string>()), state[2].cast<std::string>());
+          }));
 }
 
 }  // namespace grainlaw::python

@@ -42,10 +42,13 @@ void add_path(py::module_& module) {
       .def_property_readonly("nu", [](const StrainPath& self) { return self.file.path.nu; })
       .def_property_readonly("segments", [](const StrainPath& self) { return self.file.path.segments.size(); })
       .def("to_dict", [](const StrainPath& self) { return path_to_python(self.file.path); })
-      .def("__repr__", [](const StrainPath& self) {
-        return fmt::format("<Path {} from nu = {}, {} segments>", self.name, self.file.path.nu,
-                           self.file.path.segments.size());
-      });
+      .def("__repr__",
+           [](const StrainPath& self) {
+             return fmt::format("<Path {} from nu = {}, {} segments>", self.name, self.file.path.nu,
+                                self.file.path.segments.size());
+           })
+      .def(py::pickle([](const StrainPath& self) { return path_to_python(self.file.path); },
+                      [](const py::object& state) { return std::make_shared<StrainPath>(*path_of(state)); }));
 }
 
 void add_series_type(py::module_& module) {

@@ -1,8 +1,10 @@
 """The calibrated law in Python: parameters, predictions in memory beside those in files, batches beside single paths."""
 
+import copy
 import csv
 import json
 import os
+import pickle
 import subprocess
 import threading
 import unittest
@@ -50,6 +52,20 @@ class Parameters(unittest.TestCase):
         for source in ("law", b"law", "law/parameters.json"):
             again = grainlaw.CalibratedLaw(source)
             self.assertEqual([p.value for p in again.parameters.values()], [p.value for p in law.parameters.values()])
+
+    def test_other_processes_get_the_same_law(self):
+        for sent in (law, law.with_values({"pressure.p0": 0.04}), grainlaw.CalibratedLaw("law")):
+            for got in (pickle.loads(pickle.dumps(sent)), copy.deepcopy(sent)):
+                np.testing.assert_array_equal(got.covariance, sent.covariance)
+                self.assertEqual((got.file, got.models, got.bands, got.range, got.dataset_digest, got.converged, repr(got)),
+                                 (sent.file, sent.models, sent.bands, sent.range, sent.dataset_digest, sent.converged, repr(sent)))
+                for name, parameter in sent.parameters.items():
+                    for key in ("value", "standard_error", "degrees_of_freedom", "interval", "status", "note"):
+                        self.assertEqual(getattr(got[name], key), getattr(parameter, key), (name, key))
+                path = pickle.loads(pickle.dumps(grainlaw.Path(TURN)))
+                ours, theirs = sent.predict(TURN, bands=True), got.predict(path, bands=True)
+                for column in ours:
+                    np.testing.assert_array_equal(theirs[column], ours[column], column)
 
     def test_changed_values(self):
         p0 = law["pressure.p0"].value
