@@ -13,6 +13,7 @@ struct ParametersFile {
   Json provenance;  ///< who made it, when and from what; null when not said
 };
 
+/// The document of parameters.json.
 OrderedJson parameters_to_json(const ParametersFile& parameters);
 
 /// `name` stands for the document in messages. Throws InvalidInput naming key and value.
