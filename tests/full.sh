@@ -38,14 +38,16 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
 }
 
 # --- What is known of a stage: build/full/STAGE.result, DIGEST VERDICT SECONDS DATE COUNTS..., then what failed -----------
-digest_of_sources() { # committed or not
+digest_of_sources() ( # committed or not; without the pages, whose tests are part of every CI run
   if git rev-parse --git-dir >/dev/null 2>&1; then
-    GIT_INDEX_FILE=$folder/index git add --all . 2>/dev/null
-    GIT_INDEX_FILE=$folder/index git write-tree
+    export GIT_INDEX_FILE=$folder/index
+    git add --all . 2>/dev/null
+    git rm -r --cached --quiet --ignore-unmatch -- '*.md'
+    git write-tree
   else
-    find . -path ./build -prune -o -type f -print0 | sort -z | xargs -0 sha256sum | sha256sum | cut -c 1-40
+    find . -path ./build -prune -o -type f ! -name '*.md' -print0 | sort -z | xargs -0 sha256sum | sha256sum | cut -c 1-40
   fi
-}
+)
 
 known() { # stage field
   [[ -s $folder/$1.result ]] && head -1 "$folder/$1.result" | cut -d ' ' -f "$2"
@@ -131,7 +133,7 @@ follow() { # pid number stage: says how far it is, on a terminal in one line, el
 
 summary() {
   local stage
-  echo "Sources: tree $digest, commit $(git rev-parse --short HEAD 2>/dev/null || echo none)$(
+  echo "Sources: tree $digest (without pages), commit $(git rev-parse --short HEAD 2>/dev/null || echo none)$(
     [[ -z $(git status --porcelain 2>/dev/null) ]] || echo " and changes"); $(nproc) cores, $(g++ --version | head -1)."
   echo
   echo "| Stage | Verdict | Minutes | What ran |"
