@@ -60,70 +60,43 @@ struct PredictedRow {
 };
 
 /// The columns of a prediction, in the order of writing.
+// clang-format off
 constexpr auto fields_of(std::type_identity<PredictedRow>) {
   using R = PredictedRow;
   constexpr auto needed = Rule::needed, number = Rule::needed_number;
   return std::tuple_cat(
       place_fields<R>(number),
       std::tuple{
-          Field{[](auto& r) -> auto& { return r.state.P;
+          Field{[](auto& r) -> auto& { return r.state.P; }, "P_star", "", "P*", "pressure times 2<r>/k", number},
+          Field{&R::s_dev, "s_dev", "", "s_dev", "stress ratio, a norm", needed},
+          Field{&R::s_par, "s_par", "", "s_par", "signed stress ratio along the path's first shear direction", needed},
+          Field{&R::F_dev, "F_dev", "", "F_dev", "deviatoric fabric, a norm", needed},
+          Field{&R::F_par, "F_par", "", "F_par", "signed deviatoric fabric along the path's first shear direction", needed},
+          Field{[](auto& r) -> auto& { return r.state.sigma; }, "sigma_dev", "", "sigma'*",
+                "deviatoric stress times 2<r>/k, compression positive", number},
+          Field{[](auto& r) -> auto& { return r.state.F; }, "fabric_dev", "", "F'", "deviatoric fabric", needed},
+          Field{[](auto& r) -> auto& { return r.mean.P; }, "P_star_mean95", "", "",
+                "half width of the 95 % band of the mean curve about P*"},
+          Field{[](auto& r) -> auto& { return r.single.P; }, "P_star_single95", "", "",
+                "half width of the 95 % band of a single run about P*"},
+          Field{[](auto& r) -> auto& { return r.mean.s_dev; }, "s_dev_mean95", "", "",
+                "half width of the 95 % band of the mean curve about s_dev"},
+          Field{[](auto& r) -> auto& { return r.single.s_dev; }, "s_dev_single95", "", "",
+                "half width of the 95 % band of a single run about s_dev"},
+          Field{[](auto& r) -> auto& { return r.mean.s_par; }, "s_par_mean95", "", "",
+                "half width of the 95 % band of the mean curve about s_par"},
+          Field{[](auto& r) -> auto& { return r.single.s_par; }, "s_par_single95", "", "",
+                "half width of the 95 % band of a single run about s_par"},
+          Field{[](auto& r) -> auto& { return r.mean.F_dev; }, "F_dev_mean95", "", "",
+                "half width of the 95 % band of the mean curve about F_dev"},
+          Field{[](auto& r) -> auto& { return r.single.F_dev; }, "F_dev_single95", "", "",
+                "half width of the 95 % band of a single run about F_dev"},
+          Field{[](auto& r) -> auto& { return r.mean.F_par; }, "F_par_mean95", "", "",
+                "half width of the 95 % band of the mean curve about F_par"},
+          Field{[](auto& r) -> auto& { return r.single.F_par; }, "F_par_single95", "", "",
+                "half width of the 95 % band of a single run about F_par"}});
 }
-, "P_star", "", "P*", "pressure times 2<r>/k", number
-}  // namespace grainlaw::predict
-, Field{&R::s_dev, "s_dev", "", "s_dev", "stress ratio, a norm", needed},
-    Field{&R::s_par, "s_par", "", "s_par", "signed stress ratio along the path's first shear direction", needed},
-    Field{&R::F_dev, "F_dev", "", "F_dev", "deviatoric fabric, a norm", needed},
-    Field{&R::F_par, "F_par", "", "F_par", "signed deviatoric fabric along the path's first shear direction", needed},
-    Field{[](auto& r) -> auto& {return r.state.sigma;
-}
-, "sigma_dev", "", "sigma'*", "deviatoric stress times 2<r>/k, compression positive", number
-}
-, Field{[](auto& r) -> auto& {return r.state.F;
-}
-, "fabric_dev", "", "F'", "deviatoric fabric", needed
-}
-, Field{[](auto& r) -> auto& {return r.mean.P;
-}
-, "P_star_mean95", "", "", "half width of the 95 % band of the mean curve about P*"
-}
-, Field{[](auto& r) -> auto& {return r.single.P;
-}
-, "P_star_single95", "", "", "half width of the 95 % band of a single run about P*"
-}
-, Field{[](auto& r) -> auto& {return r.mean.s_dev;
-}
-, "s_dev_mean95", "", "", "half width of the 95 % band of the mean curve about s_dev"
-}
-, Field{[](auto& r) -> auto& {return r.single.s_dev;
-}
-, "s_dev_single95", "", "", "half width of the 95 % band of a single run about s_dev"
-}
-, Field{[](auto& r) -> auto& {return r.mean.s_par;
-}
-, "s_par_mean95", "", "", "half width of the 95 % band of the mean curve about s_par"
-}
-, Field{[](auto& r) -> auto& {return r.single.s_par;
-}
-, "s_par_single95", "", "", "half width of the 95 % band of a single run about s_par"
-}
-, Field{[](auto& r) -> auto& {return r.mean.F_dev;
-}
-, "F_dev_mean95", "", "", "half width of the 95 % band of the mean curve about F_dev"
-}
-, Field{[](auto& r) -> auto& {return r.single.F_dev;
-}
-, "F_dev_single95", "", "", "half width of the 95 % band of a single run about F_dev"
-}
-, Field{[](auto& r) -> auto& {return r.mean.F_par;
-}
-, "F_par_mean95", "", "", "half width of the 95 % band of the mean curve about F_par"
-}
-, Field {
-  [](auto& r) -> auto& { return r.single.F_par; }
-  , "F_par_single95", "", "", "half width of the 95 % band of a single run about F_par"
-}
-});
-}
+// clang-format on
 
 /// What happens on the way besides corners; see path_integration.hpp.
 enum class EventKind { unjammed, jammed, tension };
@@ -173,9 +146,9 @@ LawState<double> state_from_row(const Observation& row);
 
 /// The reduced model goes without the fabric where the law or the start does not know it (NaN): then that of the rows is NaN, too.
 /// The rows at `points` of the path `segments`, beginning at `start`. `coupling` and `tolerances` are not read by the
-/// reduced model. Warns once for each way in which the rows leave `range`. Throws InvalidInput for a start that is not jammed or points off the path; NotConverged with segment,
-/// strain and the solver's word when the solver fails, when y is not finite or t differs from the requested output;
-/// Interrupted.
+/// reduced model. Warns once for each way in which the rows leave `range`. Throws InvalidInput for a start that is not
+/// jammed or points off the path; NotConverged with segment, strain and
+/// the solver's word when the solver fails, when y is not finite or t differs from the requested output; Interrupted.
 Prediction predict(Rung model, const LawParameters<double>& parameters, Coupling coupling,
                    const std::vector<StraightSegment>& segments, const LawState<double>& start,
                    const std::vector<OutputPoint>& points, const Tolerances& tolerances, const ValidRange& range,
