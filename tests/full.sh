@@ -18,8 +18,10 @@ options=(-DGRAINLAW_LONG=ON)
 if [[ ${CI:-false} == true ]]; then options+=(-DGRAINLAW_WERROR=ON); fi
 
 build() { # preset option...
+  local begin=$SECONDS
   cmake --preset "$1" --log-level=WARNING "${@:2}"
   cmake --build "build/$1" --parallel "$jobs"
+  echo "built $1 in $((SECONDS - begin)) s"
 }
 
 run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
@@ -70,6 +72,7 @@ counts() { # stage: what its log says
     /^[^ ]+ [^ ]+ [^ ]+ ok$/ && !/^valgrind:/ { figures++ }
     /^[^ ]+ [^ ]+ [^ ]+ short$/ { short++ }
     NF == 6 && $2 $3 $4 $5 $6 ~ /^[0-9.-]+$/ { readers++; findings += $6 }
+    /^built [^ ]+ in [0-9]+ s$/ { built = $4 }
     NF { gsub(/\|/, "/"); last = $0 }
     END {
       if (tests + failed) printf "%d tests passed, %d skipped, %d failed", tests, skipped, failed
@@ -78,6 +81,7 @@ counts() { # stage: what its log says
       if (figures + short) printf "%d figures within bounds, %d short", figures, short
       if (reports) printf "%s%d reports of errors", (tests + failed + programs ? ", " : ""), reports
       if (!(tests + failed + programs + readers + figures + short + reports)) printf "ended with: %s", substr(last, 1, 100)
+      if (built > 10) printf "; built in %d s", built
     }' "$folder/$1.log"
 }
 
