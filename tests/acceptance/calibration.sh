@@ -148,7 +148,7 @@ else
   figure shipped_data missing stated # examples/paper/run.sh makes them
 fi
 if [[ $quick == yes ]]; then finish_figures; exit; fi
-figures_of_tests $bin/long 'Studies/Coverage*' F2. F3. F7.
+figures_of_tests $bin/long 'Studies/Coverage.*' F2. F3. F7.
 wanted_errors
 price_beside_lammps
 finish_figures
