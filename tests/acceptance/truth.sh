@@ -29,7 +29,7 @@ every_path() {
   [[ $quick == yes ]] && paths=2000
   GRAINLAW_RANDOM_PATHS=$paths taskset -c 0 "$bin/verification_predict" --gtest_filter='RandomPaths.*' >"$log" 2>&1 || true
   figure random_paths.paths "$paths" stated
-  while read -r _ name value bound; do figure "$name" "$value" "<=$bound"; done < <(grep '^figure ' "$log")
+  while read -r _ name value bound; do figure "$name" "$value" "<=$bound"; done < <(grep -E '^figure( [^ ]+){3}$' "$log")
   figure_of_time random_paths.slowest "$(awk '$1 == "slowest_seconds" { print $2 }' "$log" | grep . || echo missing)" "<=0.42"
   passed turns verification_predict 'Turns.*' 1
   passed spin verification_predict 'Spin.*:Sensitivity.GoesOnWhereShearTurns*:Integrators.FollowWhatTurns*' 3
@@ -66,7 +66,7 @@ few_packings() {
       *.not_covered_at_most) figure "few.$name" "$value" "<=0.07" ;;
       *.covered_at_most) figure "few.$name" "$value" "<=0.97" ;;
     esac
-  done < <(grep '^figure ' "$out/few.txt")
+  done < <(grep -E '^figure( [^ ]+){3}$' "$out/few.txt")
 }
 
 lies() {
