@@ -67,9 +67,9 @@ Drive make_drive(const StraightSegment& segment, const DriveOptions& options, co
 }
 
 Eigen::Vector3d stretch_of(const StraightSegment& segment, double e) {
-  const Eigen::Vector3d strain = e * segment.direction.tensor.diagonal();
-  if (segment.portable) return strain.unaryExpr([](double x) { return portable::exp(x); });
-  return strain.array().exp();
+  // One function for all three: Eigen's exp() takes vectors of two and another for the third, which differ in the last bit.
+  double (*const exp)(double) = segment.portable ? portable::exp : [](double x) { return std::exp(x); };
+  return (e * segment.direction.tensor.diagonal()).unaryExpr(exp);
 }
 
 double path_parameter(const Drive& drive, double t) {

@@ -54,6 +54,21 @@ TEST(Drive, EndsAreExact) {
   }
 }
 
+// To the last bit, on which the bits of a run depend: vectors of two edges and a third alone once took two kinds of exp.
+TEST(Drive, AnEdgeIsStretchedTheSameWhateverItsName) {
+  const double rate[] = {-1, 0.3, 0.7};
+  for (const char* axes : {"xyz", "yzx", "zxy"}) {
+    Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
+    for (int k = 0; k < 3; ++k) tensor(axes[k] - 'x', axes[k] - 'x') = rate[k];
+    const StraightSegment segment = scene::segment_of(tensor, 0.2, 0.7);
+    for (int i = 0; i <= 1000; ++i) {
+      const double e = 2e-4 * i;
+      const Eigen::Vector3d stretch = stretch_of(segment, e);
+      for (int k = 0; k < 3; ++k) ASSERT_EQ(stretch(axes[k] - 'x'), std::exp(e * rate[k])) << axes << ", edge " << k;
+    }
+  }
+}
+
 TEST(Drive, ConstantVolumeModesKeepTheVolume) {
   for (const Mode mode : {Mode::D2, Mode::D3}) {
     for (const bool reverse : {false, true}) {
