@@ -70,7 +70,8 @@ counts() { # stage: what its log says
     /^valgrind: .* ok$/ { programs++ }
     /^valgrind: .* FAILED/ { reports++ }
     /^[^ ]+ [^ ]+ [^ ]+ ok$/ && !/^valgrind:/ { figures++ }
-    /^[^ ]+ [^ ]+ [^ ]+ short$/ { short++ }
+    /^[^ ]+ [^ ]+ [<>]=[^ ]+ short$/ { short++ }
+    /^[^ ]+ [^ ]+ aim<=[^ ]+ short$/ { aims++ }
     NF == 6 && $2 $3 $4 $5 $6 ~ /^[0-9.-]+$/ { readers++; findings += $6 }
     /^built [^ ]+ in [0-9]+ s$/ { built = $4 }
     NF { gsub(/\|/, "/"); last = $0 }
@@ -78,7 +79,7 @@ counts() { # stage: what its log says
       if (tests + failed) printf "%d tests passed, %d skipped, %d failed", tests, skipped, failed
       if (programs) printf "%d programs without an error", programs
       if (readers) printf "%d readers, %d with findings", readers, findings
-      if (figures + short) printf "%d figures within bounds, %d short", figures, short
+      if (figures + short) printf "%d figures within bounds, %d short%s", figures, short, (aims ? ", " aims " short of an aim" : "")
       if (reports) printf "%s%d reports of errors", (tests + failed + programs ? ", " : ""), reports
       if (!(tests + failed + programs + readers + figures + short + reports)) printf "ended with: %s", substr(last, 1, 100)
       if (built > 10) printf "; built in %d s", built
@@ -87,7 +88,7 @@ counts() { # stage: what its log says
 
 failures() { # stage: names of failed tests and short figures
   sed -nE -e 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .*\*\*\*(Failed|Timeout|Exception).*/\1/p' \
-    -e 's/^([^ ]+ [^ ]+ [^ ]+) short$/\1/p' -e 's/^valgrind: ([^ ]+), .* FAILED$/\1/p' "$folder/$1.log" | sort -u
+    -e 's/^([^ ]+ [^ ]+ (aim)?[<>]=[^ ]+) short$/\1/p' -e 's/^valgrind: ([^ ]+), .* FAILED$/\1/p' "$folder/$1.log" | sort -u
 }
 
 # --- Saying what is going on -------------------------------------------------------------------------------------------------
