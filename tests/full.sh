@@ -70,7 +70,7 @@ counts() { # stage: what its log says
     /^valgrind: .* ok$/ { programs++ }
     /^valgrind: .* FAILED/ { reports++ }
     /^[^ ]+ [^ ]+ [^ ]+ ok$/ && !/^valgrind:/ { figures++ }
-    /^[^ ]+ [^ ]+ [<>]=[^ ]+ short$/ { short++ }
+    /^[^ ]+ [^ ]+ [^ ]+ short$/ && $3 !~ /^aim/ && !/figures are short$/ { short++ }
     /^[^ ]+ [^ ]+ aim<=[^ ]+ short$/ { aims++ }
     NF == 6 && $2 $3 $4 $5 $6 ~ /^[0-9.-]+$/ { readers++; findings += $6 }
     /^built [^ ]+ in [0-9]+ s$/ { built = $4 }
@@ -88,7 +88,7 @@ counts() { # stage: what its log says
 
 failures() { # stage: names of failed tests and short figures
   sed -nE -e 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: ([^ ]+) .*\*\*\*(Failed|Timeout|Exception).*/\1/p' \
-    -e 's/^([^ ]+ [^ ]+ (aim)?[<>]=[^ ]+) short$/\1/p' -e 's/^valgrind: ([^ ]+), .* FAILED$/\1/p' "$folder/$1.log" | sort -u
+    -e '/figures are short$/d' -e 's/^([^ ]+ [^ ]+ [^ ]+) short$/\1/p' -e 's/^valgrind: ([^ ]+), .* FAILED$/\1/p' "$folder/$1.log" | sort -u
 }
 
 # --- Saying what is going on -------------------------------------------------------------------------------------------------
