@@ -5,8 +5,8 @@
 # Whether the re-cut changed a digit is asked of 3373ed0, where it ended, in build/house/recut. Today's program has another law of
 # memory (since d122e73), standard errors moderated by a prior, and bands by them: of it, series and values of parameters are
 # compared, those of memory aside. All on the inputs of 3373ed0, which all three programs read.
-# --quick: lines, files and arrows, what a change touches. Otherwise also the changes built and tested, the digits, a folder of the
-# old program taken up, the installed libraries, and speeds.
+# --quick: lines, files and arrows, what a change touches, and with --base today's digits of the refit. Otherwise also the changes built
+# and tested, the other digits, a folder of the old program taken up, the installed libraries, and speeds.
 # Run it alone: speeds are measured side by side on a pinned core. 20 minutes, of which most go into compiling.
 set -euo pipefail
 
@@ -104,16 +104,14 @@ built() { # name commit: the program of a commit, in build/house
    cmake --build build/release --parallel "$(nproc)" --target grainlaw) >"$out/$1.log" 2>&1
 }
 
-old_programs() {
+old_program() {
   if [[ -z $base ]]; then
     built base $old_commit
     base=$out/base
   fi
-  built recut $recut_commit
+  clone recut $recut_commit
   old=$base/build/release/bin/grainlaw
-  recut=$out/recut/build/release/bin/grainlaw
   "$old" --version >&2
-  "$recut" --version >&2
 }
 
 # Values of a JSON file of the old program that another has not, who, when and how long aside. Added keys are none of them.
@@ -190,14 +188,16 @@ same_series_and_values() { # name old-folder new-folder least-series subfolder..
          '[$old | keys[] | select($old[.] != $new[.])] | length')" "<=0"
 }
 
-same_digits() { # refit or quickstart, least number of files, of series
-  local name=$1
-  rm -rf "${out:?}/$name"
-  ("$name" "$old" "$out/$name/old")
-  ("$name" "$recut" "$out/$name/recut")
-  ("$name" "$new" "$out/$name/new")
-  digits "$name" "$out/$name/old" "$out/$name/recut" "$2"
-  same_series_and_values "$name.today" "$out/$name/old" "$out/$name/new" "$3" dataset predictions
+today() { # refit or quickstart, least number of series
+  rm -rf "${out:?}/$1"
+  ("$1" "$old" "$out/$1/old")
+  ("$1" "$new" "$out/$1/new")
+  same_series_and_values "$1.today" "$out/$1/old" "$out/$1/new" "$2" dataset predictions
+}
+
+recut() { # refit or quickstart, least number of files
+  ("$1" "$out/recut/build/release/bin/grainlaw" "$out/$1/recut")
+  digits "$1" "$out/$1/old" "$out/$1/recut" "$2"
 }
 
 finished_runs() { find "$1/runs" -name run.json 2>/dev/null | sort; }
@@ -268,10 +268,15 @@ installed() {
 size
 arrows
 changes
+if [[ $quick == no || -n $base ]]; then
+  old_program
+  today refit 100
+fi
 if [[ $quick == no ]]; then
-  old_programs
-  same_digits refit 250 100
-  same_digits quickstart 60 20
+  today quickstart 20
+  built recut $recut_commit
+  recut refit 250
+  recut quickstart 60
   taken_up
   installed
   speeds
