@@ -112,8 +112,8 @@ class SegmentLaw {
                                    direction_);
   }
 
-  /// dy/de, into `out`.
-  void rate(double e, const double* y, double* out) const {
+  /// dy/de, into `out`. Flattened: left to themselves, compilers call the parts of the law, which takes a tenth longer.
+  [[gnu::flatten]] void rate(double e, const double* y, double* out) const {
     const LawState<double> state = state_of(e, y);
     const LawState<double> rate = state_rate(e, state);
     const Place& here = at(e);
