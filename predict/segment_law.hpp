@@ -28,7 +28,7 @@ inline const Deviator<double>& numbers(const Deviator<double>& part) { return pa
 
 /// Writes `of` the numbers of each part, by default as they stand. Part by part: reading in other portions than were written makes a processor wait.
 template <class Of = std::identity>
-[[gnu::flatten]] void pack(const LawState<double>& state, double* y, const Of& of = {}) {
+GRAINLAW_FLATTEN void pack(const LawState<double>& state, double* y, const Of& of = {}) {
   for_each_part(
       [&](const StatePart&, const auto& part) {
         const auto& from = numbers(part);
@@ -43,7 +43,7 @@ inline Unknowns packed(const LawState<double>& state) {
   pack(state, y.data());
   return y;
 }
-[[gnu::flatten]] inline LawState<double> unpacked(const double* y) {
+GRAINLAW_FLATTEN inline LawState<double> unpacked(const double* y) {
   LawState<double> state;
   for_each_part(
       [&y](const StatePart&, auto& part) {
@@ -113,7 +113,7 @@ class SegmentLaw {
   }
 
   /// dy/de, into `out`. Flattened: left to themselves, compilers call the parts of the law, which takes a tenth longer.
-  [[gnu::flatten]] void rate(double e, const double* y, double* out) const {
+  GRAINLAW_FLATTEN void rate(double e, const double* y, double* out) const {
     const LawState<double> state = state_of(e, y);
     const LawState<double> rate = state_rate(e, state);
     const Place& here = at(e);

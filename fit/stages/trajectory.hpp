@@ -79,13 +79,6 @@ LawState<T> combination(const LawState<T>& y, double h, const std::array<LawStat
 
 }  // namespace detail
 
-// Code with assertions or sanitizers is checked, not raced; flattened, it took the compiler more than nine minutes.
-#ifdef NDEBUG
-#define GRAINLAW_FLATTEN [[gnu::flatten]]
-#else
-#define GRAINLAW_FLATTEN
-#endif
-
 /// Where a step looks at the right-hand side, as fractions of the step, and which of these places each stage takes.
 inline constexpr std::array<double, 5> kStepNodes{0, 1. / 3, 2. / 3, 1. / 2, 1};
 inline constexpr std::array<std::size_t, 7> kStageNode{0, 1, 2, 1, 3, 3, 4};
@@ -106,7 +99,6 @@ GRAINLAW_FLATTEN LawState<T> butcher6_step(const Rate& rate, double h, const Law
   for (std::size_t i = 0; i < 7; ++i) k[i] = rate(kStageNode[i], detail::combination(y, h, k, a[i], i));
   return detail::combination(y, h, k, b, 7);
 }
-#undef GRAINLAW_FLATTEN
 
 /// The law along the trajectory; `visit(i, state)` is called for each row in order. False when the state leaves P > 0.
 template <class T, class Visit>
