@@ -42,7 +42,8 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
 # --- What is known of a stage: build/full/STAGE.result, DIGEST VERDICT SECONDS DATE COUNTS..., then what failed -----------
 digest_of_sources() ( # committed or not; without the pages, whose tests are part of every CI run
   if git rev-parse --git-dir >/dev/null 2>&1; then
-    export GIT_INDEX_FILE=$folder/index
+    export GIT_INDEX_FILE=$folder/index.$BASHPID  # another call may ask at the same time
+    trap 'rm -f "$GIT_INDEX_FILE"' EXIT
     git add --all . 2>/dev/null
     git rm -r --cached --quiet --ignore-unmatch -- '*.md'
     git write-tree
