@@ -78,14 +78,6 @@ T reference_density(const LawParameters<T>& p, double nu) {
   return nu > jammed ? T(nu) : jammed;
 }
 
-/// P_iso: Eq. (14), and below jamming its tangent there (negative).
-template <class T>
-T reference_pressure(const LawParameters<T>& p, double nu) {
-  using std::log;
-  const T at = reference_density(p, nu);
-  return p.isotropic.P_star(at) + p.isotropic.B_star(at) * log(nu / at);
-}
-
 /// Moduli of the volume fraction alone, those of the reference at `nu`.
 template <class T>
 LawModuli<T> memory_moduli(const LawParameters<T>& p, double nu) {
