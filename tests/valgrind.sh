@@ -1,13 +1,16 @@
 #!/usr/bin/env bash
 # tests/valgrind.sh [PROGRAM[:FILTER]...]: unit tests of build/assertions, which must be built, under valgrind's memcheck; without
-# names those of model, fit and predict, and those of dem but the slowest.
+# names those of model, dem, fit and predict but the slowest.
 # One line each, "valgrind: PROGRAM ... ok|FAILED"; logs are left in build/valgrind. Exit code 1 if a test fails, memory is read
 # before it is written or out of bounds, or a block is lost.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 programs=("$@")
 if ((${#programs[@]} == 0)); then
-  programs=(unit_fit unit_model unit_predict "unit_dem:-Runs.*:LaneList*:PathProbes*:ElasticModuli*:Preparation.*")
+  slow_fit=Calibrate.A*:Calibrate.Cov*:Calibrate.F*:Calibrate.T*:Calibrate.Si*:LeaveOneOut.IsThe*:LodeFit.Leaves*:MemoryFit.TheRate*
+  slow_fit+=:WithoutContacts.*:WithoutFabric.C*  # half an hour to an hour, which go through the same sources as those that are left
+  slow_dem=Runs.*:LaneList*:PathProbes*:ElasticModuli*:Preparation.*
+  programs=("unit_fit:-$slow_fit" unit_model unit_predict "unit_dem:-$slow_dem")
 fi
 mkdir -p build/valgrind
 
