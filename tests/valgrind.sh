@@ -49,6 +49,7 @@ check() { # PROGRAM[:FILTER]
     --num-callers=20 --child-silent-after-fork=yes --suppressions=build/valgrind/suppressions \
     "build/assertions/bin/$program" --gtest_filter="$filter" >"$log" 2>&1 || verdict=FAILED
   count() { grep -c "$@" "$log" || true; }
+  [[ $(count '^\[       OK \]') != 0 ]] || verdict=FAILED
   printf 'valgrind: %s, %s tests passed, %s skipped, %s failed, %s errors, %d s: %s\n' "$program" \
     "$(count '^\[       OK \]')" "$(count '^\[  SKIPPED \] .* ms')" "$(count '^\[  FAILED  \] .* ms')" \
     "$(count -E '^==[0-9]+== (Invalid|Conditional|Use of|Syscall|Mismatched|Source|[0-9,]+ .*definitely)')" \
