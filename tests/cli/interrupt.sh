@@ -19,9 +19,10 @@ for signal in INT TERM; do
     kill -0 $pid 2>/dev/null || fail "ended by itself: $(cat log)"
     sleep 0.1
   done
+  rm -f other  # of the signal before: what it says would be taken for the second process's word
   "$grainlaw" calibrate spec.json -o out >/dev/null 2>other &
   second=$!
-  for ((i = 0; i < 300; ++i)); do grep -q 'long.*: is made by process' other && break; sleep 0.1; done
+  for ((i = 0; i < 300; ++i)); do grep -qs 'long.*: is made by process' other && break; sleep 0.1; done
   kill -$signal $second
   code=0
   wait $second || code=$?
