@@ -24,9 +24,6 @@ build() { # preset option...
   echo "built $1 in $((SECONDS - begin)) s"
 }
 
-# A command without randomised addresses, where that is allowed: of thousands of processes one finds those taken that its sanitizer wants.
-unshuffled() { if setarch -R true; then setarch -R "$@"; else "$@"; fi; }
-
 run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
   case $1 in
     clang | fuzz) command -v clang++-14 || return 77 ;;
@@ -35,8 +32,7 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
   case $1 in
     release) build release "${options[@]}"; ctest --preset release --parallel $((jobs + 1)) ;;
     long) build release "${options[@]}"; ctest --test-dir build/release -L '^long$' --output-on-failure --parallel "$jobs" ;;
-    clang | assertions | asan-ubsan) build "$1"; ctest --preset "$1" --parallel "$jobs" ;;
-    tsan) build tsan; unshuffled ctest --preset tsan --parallel "$jobs" ;;
+    clang | assertions | asan-ubsan | tsan) build "$1"; ctest --preset "$1" --parallel "$jobs" ;;
     valgrind) build assertions; tests/valgrind.sh ;;
     fuzz) build release "${options[@]}"; tests/fuzz/run.sh --seconds 60 --grainlaw build/release/bin/grainlaw ;;
     *) bash "tests/acceptance/$1.sh" ;;
