@@ -69,7 +69,7 @@ struct AnisotropyModuli {
 
 template <class T>
 AnisotropyModuli<T> anisotropy_moduli(const Anisotropy<T>& a, Coupling coupling, const T& B, const LawState<T>& y,
-                                      const Deviator<T>& N) {
+                                      const Deviator<Plain<T>>& N) {
   if (coupling == Coupling::single) return {a.a0 * y.F.dot(N), a.a0 / 3.0};
   const T A2_per_F = a.a2 * B;
   return {(2.0 / 3.0) * (A2_per_F * y.F.dot(N) - y.sigma.dot(N)), A2_per_F};
@@ -80,13 +80,13 @@ AnisotropyModuli<T> anisotropy_moduli(const Anisotropy<T>& a, Coupling coupling,
 template <class T>
 LawState<T> evolution_rate(const LawModuli<T>& m, const Anisotropy<T>& anisotropy, Coupling coupling,
                            const LawState<T>& y, const LawDirection& direction) {
-  const Deviator<T> N = direction.N.template cast<T>();
+  const Deviator<Plain<T>> N = direction.N.template cast<Plain<T>>();
   const AnisotropyModuli<T> A = anisotropy_moduli(anisotropy, coupling, m.B, y, N);
   const T S = 1.0 - y.sigma.dot(N) / (y.P * m.s_max);
   LawState<T> rate;
   rate.P = m.B * direction.dx + A.A1 * S * direction.de;
-  rate.sigma =
-      y.F * (A.A2_per_F * direction.dx) + (N * (m.beta_s * m.s_max * y.P) - y.sigma * m.beta_s) * T(direction.de);
+  rate.sigma = y.F * (A.A2_per_F * direction.dx) +
+               (N * (m.beta_s * m.s_max * y.P) - y.sigma * m.beta_s) * Plain<T>(direction.de);
   rate.F = (N * m.F_max - y.F) * (m.beta_F * direction.de);
   return rate;
 }

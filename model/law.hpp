@@ -65,7 +65,7 @@ LawState<T> following_rate(const LawModuli<T>& m, const LawParameters<T>& p, Law
                            const LawDirection& direction) {
   reverse(y, direction);
   LawState<T> rate = law_rate(m, p, Rung::memory, Coupling::energy, y, direction);
-  rate.s_r += direction.N.template cast<T>() * reversal_rate(y, rate, direction);
+  rate.s_r += direction.N.template cast<Plain<T>>() * reversal_rate(y, rate, direction);
   return rate;
 }
 

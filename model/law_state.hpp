@@ -12,16 +12,20 @@
 
 namespace grainlaw {
 
+/// T, but a plain number where T is a dual one: of what no parameter changes. The product of two dual numbers is three times the work.
+template <class T>
+using Plain = std::conditional_t<std::is_floating_point_v<T>, T, double>;
+
 /// State of the law, or its rate: one vector (as_vector) whose parts have names. A part is a number or a deviator, zero unless
-/// given. A new variable is a member here and its line in for_each_part().
+/// given; no parameter changes E. A new variable is a member here and its line in for_each_part().
 template <class T>
 struct LawState {
   T P{};                                    ///< pressure P* [-]
   Deviator<T> sigma = Deviator<T>::Zero();  ///< deviatoric stress times 2<r>/k, compression positive [-]
   Deviator<T> F = Deviator<T>::Zero();      ///< deviatoric fabric, compression positive [-]
   // read by Rung::memory alone, zero when virgin
-  Deviator<T> s_r = Deviator<T>::Zero();  ///< sigma'/P at the last reversal [-]
-  Deviator<T> E = Deviator<T>::Zero();    ///< fading memory of the direction of shear, |E| <= 1 [-]
+  Deviator<T> s_r = Deviator<T>::Zero();              ///< sigma'/P at the last reversal [-]
+  Deviator<Plain<T>> E = Deviator<Plain<T>>::Zero();  ///< fading memory of the direction of shear, |E| <= 1 [-]
 };
 
 /// What there is to say of a part.
@@ -64,7 +68,14 @@ Eigen::Map<const StateVector<T>> as_vector(const LawState<T>& y) {
 template <class T>
 LawState<T> cast(const LawState<double>& y) {
   LawState<T> converted;
-  as_vector(converted) = as_vector(y).template cast<T>();
+  for_each_part(
+      []<class From, class To>(const StatePart&, const From& from, To& to) {
+        if constexpr (std::is_same_v<From, double>)
+          to = To(from);
+        else
+          to = from.template cast<typename To::Scalar>();
+      },
+      y, converted);
   return converted;
 }
 

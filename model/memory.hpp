@@ -50,20 +50,20 @@ inline constexpr double kPlasticRelaxation = 0.5;
 /// <s - s_r, N>: shear has turned where it is below zero. Zero without shear.
 template <class T>
 T reversal_value(const LawState<T>& y, const LawDirection& direction) {
-  return (y.sigma / y.P - y.s_r).dot(direction.N.template cast<T>());
+  return (y.sigma / y.P - y.s_r).dot(direction.N.template cast<Plain<T>>());
 }
 
 /// Makes it zero: the jump where shear has turned.
 template <class T>
 void reverse(LawState<T>& y, const LawDirection& direction) {
-  y.s_r += direction.N.template cast<T>() * reversal_value(y, direction);
+  y.s_r += direction.N.template cast<Plain<T>>() * reversal_value(y, direction);
 }
 
 /// Rate of <s - s_r, N> at `y` with d(state)/de = `rate`.
 template <class T>
 T reversal_rate(const LawState<T>& y, const LawState<T>& rate, const LawDirection& direction) {
   const Deviator<T> s = (rate.sigma - y.sigma * (rate.P / y.P)) / y.P;
-  return (s - rate.s_r).dot(direction.N.template cast<T>());
+  return (s - rate.s_r).dot(direction.N.template cast<Plain<T>>());
 }
 
 /// E after shear along a straight segment from e = 0 to `e`.
@@ -103,8 +103,8 @@ T pressure_density(const LawModuli<T>& m, const T& P) {
 }
 
 /// How the stress ratio answers to shear that loads, with the exponent n: N at a reversal, 0 on the limit [-].
-template <class T>
-Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>& N, const T& s_lim, const T& n) {
+template <class T, class U>
+Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<U>& N, const T& s_lim, const T& n) {
   using std::pow;
   using std::sqrt;
   const T turned = (s - s_r).dot(N);
@@ -127,8 +127,8 @@ Deviator<T> memory_flow(const Deviator<T>& s, Deviator<T> s_r, const Deviator<T>
 }
 
 /// k (P_t - P), how fast P goes to its sheared level where the shear is along N [-].
-template <class T>
-T pressure_relaxation(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y, const Deviator<T>& N) {
+template <class T, class U>
+T pressure_relaxation(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y, const Deviator<U>& N) {
   using std::abs;
   const T f = y.F.dot(N) / m.F_max, P_t = m.P_iso + (m.P_steady - m.P_iso) * f * abs(f);
   return p.memory.k * (P_t - y.P);
@@ -160,7 +160,7 @@ template <class T>
 LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y,
                         const LawDirection& direction) {
   using std::pow;
-  const Deviator<T> N = direction.N.template cast<T>();
+  const Deviator<Plain<T>> N = direction.N.template cast<Plain<T>>();
   const T nu_P = pressure_density(m, y.P), B = p.isotropic.B_star(nu_P);
   LawState<T> rate;
   rate.P = B * direction.dx;
@@ -168,11 +168,11 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   const Deviator<T> s = y.sigma / y.P;
   const T r = m.F_max / m.s_max;
   rate.F = (y.F - s * (p.memory.kappa * r)) * (p.memory.c_F * -std::max(direction.dx, 0.0) / (1.0 - p.memory.kappa));
-  if (direction.dx < 0) rate.sigma -= expansion_yield(m, p, y, B) * T(-direction.dx);
+  if (direction.dx < 0) rate.sigma -= expansion_yield(m, p, y, B) * Plain<T>(-direction.dx);
   if (direction.de == 0) return rate;
-  rate.E = (N - y.E) * T(direction.de / kStrainMemory);
+  rate.E = (N - y.E) * Plain<T>(direction.de / kStrainMemory);
   const T relaxation = pressure_relaxation(m, p, y, N), s_lim = dilating_limit(m, p, relaxation, B);
-  const T remembered = 1.0 + y.E.dot(N);
+  const T remembered = 1.0 + y.E.template cast<T>().dot(N);
   const Deviator<T> loading = memory_flow(s, y.s_r, N, s_lim, T(1.0 + (p.memory.m - 1.0) * remembered * remembered));
   const T A1 = (2.0 / 3.0) * (p.memory.a_P * B * y.F.dot(N) - y.sigma.dot(N));
   const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);

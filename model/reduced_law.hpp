@@ -32,7 +32,7 @@ T reduced_fabric(const LawParameters<T>& p, double nu, const T& F_0, double eps_
 /// The differential form, without corotational terms; `m` by moduli_at.
 template <class T>
 LawState<T> reduced_rate(const LawModuli<T>& m, const LawState<T>& y, const LawDirection& direction) {
-  const Deviator<T> N = direction.N.template cast<T>();
+  const Deviator<Plain<T>> N = direction.N.template cast<Plain<T>>();
   LawState<T> rate;
   rate.P = m.B * direction.dx;
   rate.sigma = y.sigma * (rate.P / y.P) + (N * (m.s_max * y.P) - y.sigma) * T(m.beta_s * direction.de);

@@ -131,7 +131,7 @@ TEST(MemoryFit, SlopesAreFiniteAtAReversal) {
   const Deviator<double> N = d.N;
   LawState<double> y{0.02, 0.16 * 0.02 * N, 0.12 * N, 0.16 * N, -0.9 * N};
   y.s_r = y.sigma / y.P;
-  const LawState<Dual> dual{Dual(y.P), y.sigma.cast<Dual>(), y.F.cast<Dual>(), y.s_r.cast<Dual>(), y.E.cast<Dual>()};
+  const LawState<Dual> dual{Dual(y.P), y.sigma.cast<Dual>(), y.F.cast<Dual>(), y.s_r.cast<Dual>(), y.E};
   const LawState<Dual> r = law_rate(p, Rung::memory, Coupling::energy, dual, 0.7, d);
   EXPECT_EQ(r.P.v(0), 0);
   for (const Dual& x : r.sigma) EXPECT_EQ(x.v(0), 0);
