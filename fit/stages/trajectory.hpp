@@ -83,10 +83,12 @@ LawState<T> combination(const LawState<T>& y, double h, const std::array<LawStat
 inline constexpr std::array<double, 5> kStepNodes{0, 1. / 3, 2. / 3, 1. / 2, 1};
 inline constexpr std::array<std::size_t, 7> kStageNode{0, 1, 2, 1, 3, 3, 4};
 
-/// One step of size `h` from `y`; `rate(node, y)` is the right-hand side at kStepNodes[node] of the step. Flattened: left to themselves,
+/// One step of size `h` from `y`; `rate(node, y)` is the right-hand side at kStepNodes[node] of the step. What `k` holds is overwritten; it
+/// is handed in, as to make it anew for each step takes a thirtieth of a fit. Flattened: left to themselves,
 /// compilers call each of the small sums and products of dual numbers, which takes three times as long (docs/performance.md).
 template <class T, class Rate>
-GRAINLAW_FLATTEN LawState<T> butcher6_step(const Rate& rate, double h, const LawState<T>& y) {
+GRAINLAW_FLATTEN LawState<T> butcher6_step(const Rate& rate, double h, const LawState<T>& y,
+                                           std::array<LawState<T>, 7>& k) {
   static constexpr std::array<std::array<double, 7>, 7> a{{{},
                                                            {1. / 3},
                                                            {0, 2. / 3},
@@ -95,7 +97,6 @@ GRAINLAW_FLATTEN LawState<T> butcher6_step(const Rate& rate, double h, const Law
                                                            {0, 9. / 8, -3. / 8, -3. / 4, 1. / 2},
                                                            {9. / 44, -9. / 11, 63. / 44, 18. / 11, 0, -16. / 11}}};
   static constexpr std::array<double, 7> b{11. / 120, 0, 27. / 40, 27. / 40, -4. / 15, -4. / 15, 11. / 120};
-  std::array<LawState<T>, 7> k;
   for (std::size_t i = 0; i < 7; ++i) k[i] = rate(kStageNode[i], detail::combination(y, h, k, a[i], i));
   return detail::combination(y, h, k, b, 7);
 }
@@ -112,6 +113,7 @@ bool integrate(const Trajectory& trajectory, const LawParameters<T>& p, Rung run
     return law_rate(moduli[node], p, rung, coupling, state, trajectory.direction);
   };
   const double strain_rate = std::max(trajectory.direction.de, std::abs(trajectory.direction.dx));
+  std::array<LawState<T>, 7> k;
   double e = 0;
   for (std::size_t i = 0; i < trajectory.rows.size(); ++i) {
     const double to = trajectory.rows[i].e;
@@ -125,7 +127,7 @@ bool integrate(const Trajectory& trajectory, const LawParameters<T>& p, Rung run
           moduli[node] = law_moduli(p, trajectory.nu(e + (step + kStepNodes[node]) * h), rung);
         }
       }
-      y = butcher6_step<T>(rate, h, y);
+      y = butcher6_step<T>(rate, h, y, k);
     }
     if (!(y.P > 0.0)) return false;
     e = to;
