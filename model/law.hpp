@@ -28,7 +28,7 @@ inline constexpr auto kRungs = kValues<Rung>;  ///< cheapest first
 
 /// What the rung takes from the volume fraction alone.
 template <class T>
-LawModuli<T> law_moduli(const LawParameters<T>& p, double nu, Rung rung) {
+GRAINLAW_FLATTEN LawModuli<T> law_moduli(const LawParameters<T>& p, double nu, Rung rung) {
   return rung == Rung::memory ? memory_moduli(p, nu) : moduli_at(p, nu);
 }
 
