@@ -83,8 +83,10 @@ InterruptGuard::InterruptGuard() : watch_(new Watch) {
 }
 
 InterruptGuard::~InterruptGuard() {
-  sigaction(SIGINT, &watch_->earlier_int, nullptr);
-  sigaction(SIGTERM, &watch_->earlier_term, nullptr);
+  if (first_signal == 0) {  // else the process is about to end, by its exit code and not by the second signal of the one wish
+    sigaction(SIGINT, &watch_->earlier_int, nullptr);
+    sigaction(SIGTERM, &watch_->earlier_term, nullptr);
+  }
   pipe_in = -1;
   close(std::exchange(watch_->ends[1], -1));  // ends the thread's read, whatever happens to system calls
   watch_->thread.join();

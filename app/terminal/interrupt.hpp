@@ -7,7 +7,7 @@
 
 namespace grainlaw::app {
 
-/// Installs the handlers; at most one at a time. The destructor restores the earlier ones.
+/// Installs the handlers; at most one at a time. The destructor restores the earlier ones, unless there was a signal.
 class InterruptGuard {
  public:
   InterruptGuard();
