@@ -10,13 +10,20 @@
 namespace grainlaw::app {
 namespace {
 
+class Interrupt : public ::testing::Test {
+ protected:
+  Interrupt() {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+  }  // libraries have threads, too, which a bare fork does not take along
+};
+
 void wish() {
   const InterruptGuard guard;
   raise(SIGTERM);
   while (!guard.token().stop_requested()) std::this_thread::yield();
 }
 
-TEST(Interrupt, TheSecondSignalOfOneWishDoesNotEndAProcessThatIsEnding) {
+TEST_F(Interrupt, TheSecondSignalOfOneWishDoesNotEndAProcessThatIsEnding) {
   // as by timeout(1), of which the second comes when the work has stopped and the exit code is on its way
   const auto interrupted = [] {
     wish();
@@ -27,7 +34,7 @@ TEST(Interrupt, TheSecondSignalOfOneWishDoesNotEndAProcessThatIsEnding) {
   EXPECT_EXIT(interrupted(), ::testing::ExitedWithCode(7), "");
 }
 
-TEST(Interrupt, AnotherWishEndsIt) {
+TEST_F(Interrupt, AnotherWishEndsIt) {
   const auto interrupted = [] {
     wish();
     std::this_thread::sleep_for(std::chrono::milliseconds(600));
@@ -37,7 +44,7 @@ TEST(Interrupt, AnotherWishEndsIt) {
   EXPECT_EXIT(interrupted(), ::testing::ExitedWithCode(130), "");
 }
 
-TEST(Interrupt, WithoutOneTheHandlersOfBeforeAreBack) {
+TEST_F(Interrupt, WithoutOneTheHandlersOfBeforeAreBack) {
   const auto undisturbed = [] {
     { const InterruptGuard guard; }
     raise(SIGTERM);
