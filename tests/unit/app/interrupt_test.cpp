@@ -12,9 +12,8 @@ namespace {
 
 class Interrupt : public ::testing::Test {
  protected:
-  Interrupt() {
-    GTEST_FLAG_SET(death_test_style, "threadsafe");
-  }  // libraries have threads, too, which a bare fork does not take along
+  // libraries have threads, too, which a bare fork does not take along
+  Interrupt() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
 };
 
 void wish() {
