@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 jobs=${CMAKE_BUILD_PARALLEL_LEVEL:-$(nproc)}
 folder=build/coverage
-rooms=(model dem fit predict app)
+rooms=(model dem fit predict chain app)
 
 ./install-packages.sh --full >&2
 cmake --preset coverage --log-level=WARNING >&2
