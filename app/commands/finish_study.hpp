@@ -12,14 +12,14 @@
 
 namespace grainlaw::app {
 
-/// `figure` is the name of the picture's file. Throws Error when a file cannot be written.
+/// `figure` is the name of the picture's file, nullptr of a study without one. Throws Error when a file cannot be written.
 template <class Study>
 ExitCode finish_study(const Study& study, const std::filesystem::path& output, const char* figure,
                       const Session& session) {
   OrderedJson document = study_to_json(study);
   document["provenance"] = provenance(session);
   write_json(output / "study.json", document);
-  report::write_svg(output / figure, report::figure_of(study));
+  if constexpr (requires { report::figure_of(study); }) report::write_svg(output / figure, report::figure_of(study));
   print_result(session.json ? json_text(document) : study_text(study) + (output / "study.json").string() + "\n");
   return ExitCode::ok;
 }

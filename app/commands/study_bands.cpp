@@ -1,7 +1,7 @@
 // grainlaw study bands FOLDER: whether bands hold on paths that are left out of what they are made of.
 
 #include "app/commands/commands.hpp"
-#include "app/terminal/study_text.hpp"
+#include "app/commands/finish_study.hpp"
 #include "chain/studies/bands_study.hpp"
 #include "model/files/output.hpp"
 
@@ -19,12 +19,7 @@ struct BandsOptions {
 ExitCode study_bands(const BandsOptions& options, Session& session) {
   const chain::BandsStudy study = chain::study_bands(options.folder, options.runs, session);
   make_output_folder(options.output);
-  OrderedJson document = chain::study_to_json(study);
-  document["provenance"] = provenance(session);
-  write_json(options.output / "study.json", document);
-  print_result(session.json ? json_text(document)
-                            : study_text(study) + (options.output / "study.json").string() + "\n");
-  return ExitCode::ok;
+  return finish_study(study, options.output, nullptr, session);
 }
 
 }  // namespace
