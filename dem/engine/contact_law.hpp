@@ -57,9 +57,4 @@ inline double damping_ratio(const Material& m, double m_ij) {
   return m.contact_viscosity / (2 * std::sqrt(m.stiffness * m_ij));
 }
 
-/// Coefficient of restitution of a free collision that ends at zero overlap [-].
-inline double restitution(const Material& m, double m_ij) {
-  return std::exp(-m.contact_viscosity * collision_time(m, m_ij) / (2 * m_ij));
-}
-
 }  // namespace grainlaw::dem

@@ -1,9 +1,16 @@
 #pragma once
 // Two spheres that meet once, followed through the engine step by step.
 
+#include <cmath>
+
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem::scene {
+
+/// Coefficient of restitution of a free collision that ends at zero overlap [-].
+inline double restitution(const Material& m, double m_ij) {
+  return std::exp(-m.contact_viscosity * collision_time(m, m_ij) / (2 * m_ij));
+}
 
 struct Encounter {
   double r_i = 1e-3, r_j = 1e-3;                         ///< [m]

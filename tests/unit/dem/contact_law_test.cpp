@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/dem_collision.hpp"
+
 namespace grainlaw::dem {
 namespace {
 
@@ -23,9 +25,9 @@ TEST(ContactLaw, NumbersOfThePaper) {
   const double mean = reduced_mass(sphere_mass(m, 1e-3), sphere_mass(m, 1e-3));
   const double least = reduced_mass(sphere_mass(m, 0.5e-3), sphere_mass(m, 0.5e-3));
   EXPECT_NEAR(collision_time(m, mean), 0.643167e-6, 5e-13);
-  EXPECT_NEAR(restitution(m, mean), 0.926100594751, 5e-13);
+  EXPECT_NEAR(scene::restitution(m, mean), 0.926100594751, 5e-13);
   EXPECT_NEAR(collision_time(m, least), 0.227871e-6, 5e-13);
-  EXPECT_NEAR(restitution(m, least), 0.804446769387, 5e-13);
+  EXPECT_NEAR(scene::restitution(m, least), 0.804446769387, 5e-13);
   EXPECT_NEAR(2 * mean / m.contact_viscosity, 8.37e-6, 0.01e-6);
   EXPECT_NEAR(2 * mean / m.background_viscosity, 83.7e-6, 0.1e-6);
 }
@@ -34,7 +36,7 @@ TEST(ContactLaw, UndampedCollisionIsHalfAPeriodAndElastic) {
   const Material m{2000, 1e8, 0, 0};
   const double m_ij = 4e-6;
   EXPECT_DOUBLE_EQ(collision_time(m, m_ij), pi * std::sqrt(m_ij / 1e8));
-  EXPECT_EQ(restitution(m, m_ij), 1);
+  EXPECT_EQ(scene::restitution(m, m_ij), 1);
 }
 
 TEST(ContactLaw, OverdampedContactHasNoCollisionTime) {

@@ -9,6 +9,7 @@
 #include "dem/engine/averages.hpp"
 #include "dem/engine/state.hpp"
 #include "model/vocabulary/error.hpp"
+#include "tests/support/dem_collision.hpp"
 #include "tests/support/dem_scene.hpp"
 
 namespace grainlaw::dem {
@@ -327,7 +328,7 @@ TEST(Ledger, FreeCollisionLosesWhatTheRestitutionSays) {
       kBox, {{1e-3, {8e-3, 10e-3, 10e-3}, {1, 0, 0}}, {1e-3, {10.01e-3, 10e-3, 10e-3}, {-1, 0, 0}}}, material);
   Simulation sim = scene::start(state, 1 / 200.3);
   sim.open_ledger();
-  const double E_0 = sim.state().ledger.E_kin_start, e = restitution(material, state.packing.mass[0] / 2);
+  const double E_0 = sim.state().ledger.E_kin_start, e = scene::restitution(material, state.packing.mass[0] / 2);
   scene::advance_at_rest(sim, 2500);
   EXPECT_LT(sim.state().packing.vx[0], 0);
   EXPECT_EQ(sim.state().ledger.W_box, 0);

@@ -72,7 +72,7 @@ TEST(HeadOnCollision, D1FormulaGivesThePublishedNumbers) {
   for (const double r : {0.5e-3, 1e-3}) {
     const double m = sphere_mass(Material{}, r), m_ij = reduced_mass(m, m);
     EXPECT_NEAR(collision_time(Material{}, m_ij) / exact_duration(r, 1), 1, 1e-14);
-    EXPECT_NEAR(restitution(Material{}, m_ij) / exact_restitution(r, 1), 1, 1e-14);
+    EXPECT_NEAR(scene::restitution(Material{}, m_ij) / exact_restitution(r, 1), 1, 1e-14);
   }
 }
 
