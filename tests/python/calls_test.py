@@ -135,14 +135,14 @@ class Interruption(unittest.TestCase):
     def script(self, body):
         return subprocess.Popen([sys.executable, "-c", textwrap.dedent(body)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
-    def interrupted(self, process, ready):
-        """Seconds from the signal, once `ready` holds, to the end of the process."""
+    def interrupted(self, process, ready, pause=0.3):
+        """Seconds from the signal, `pause` after `ready` holds, to the end of the process."""
         for _ in range(600):
             if ready():
                 break
             self.assertIsNone(process.poll(), process.stderr)
             time.sleep(0.1)
-        time.sleep(0.3)
+        time.sleep(pause)
         process.send_signal(signal.SIGINT)
         begin = time.monotonic()
         output = process.communicate(timeout=60)
@@ -179,11 +179,11 @@ class Interruption(unittest.TestCase):
         process = self.script("""
             import grainlaw, numpy as np
             law = grainlaw.CalibratedLaw("batched")
-            strain = np.zeros((400_000, 4, 6)) + np.arange(1, 5)[:, None] * [0.002, 0, -0.004, 0, 0, 0]
+            strain = np.zeros((1_200_000, 4, 6)) + np.arange(1, 5)[:, None] * [0.002, 0, -0.004, 0, 0, 0]
             open("begun", "w").close()
             law.predict_batch(strain, 0.74)
         """)
-        seconds, (out, err) = self.interrupted(process, lambda: os.path.exists("begun"))
+        seconds, (out, err) = self.interrupted(process, lambda: os.path.exists("begun"), pause=0.05)
         self.assertIn("grainlaw.Interrupted", err)
         self.assertLess(seconds, 2)
 
