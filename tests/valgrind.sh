@@ -58,4 +58,4 @@ check() { # PROGRAM[:FILTER]
 }
 export -f check
 # shellcheck disable=SC2016
-printf '%s\n' "${programs[@]}" | xargs -P "$(nproc)" -I{} bash -c 'set -euo pipefail; check "$1"' check {}
+printf '%s\n' "${programs[@]}" | xargs -P "$(nproc)" -I{} bash -c 'set -euo pipefail; check "$1"' check {} || exit 1
