@@ -45,6 +45,17 @@ TEST(ContactNetwork, RattlersAreTakenAwayUntilNoneIsLeft) {
   EXPECT_GT(taken, 120u);
 }
 
+/// At rest hardly any sphere has three contacts; of spheres placed at random many have.
+TEST(ContactNetwork, ASphereWithThreeContactsIsARattler) {
+  scene::Draw draw(5);
+  const State state = scene::random_state(200, 3, 0.8, scene::cubic(1), draw);
+  const ReferenceSums sums = reference_sums(state.packing, state.material, scene::at_rest(state));
+  EXPECT_GT(std::count(sums.contacts.begin(), sums.contacts.end(), 3), 10);
+  const State backbone = backbone_of(state, 1);
+  EXPECT_EQ(backbone.packing.id, without_rattlers(state).packing.id);
+  EXPECT_GT(backbone.packing.size(), 20u);
+}
+
 TEST(ContactNetwork, ForcesAndStressAreThoseOfTheReference) {
   scene::Draw draw(7);
   const State state = scene::random_state(150, 3, 0.7, scene::random_shape(1.5, 0.3, draw), draw);
