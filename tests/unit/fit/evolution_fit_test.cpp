@@ -30,6 +30,13 @@ Problem evolution_problem(const std::vector<Trajectory>& all) {
   return problem_of(evolution_stage(all, {}, {}), kTruth);
 }
 
+/// Lets a trajectory of one axis be compared along a second one, too, which is returned.
+Deviator<double> add_axis(Trajectory& sheared) {
+  const Deviator<double> N = sheared.axes.front();
+  const Deviator<double> M = Deviator<double>::Unit(N.cwiseAbs().maxCoeff() == std::abs(N[0]) ? 1 : 0);
+  return sheared.axes.emplace_back((M - N * N.dot(M)).normalized());
+}
+
 TEST(EvolutionFit, TruthHasNoMisfit) {
   const auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
   const Problem problem = evolution_problem(all);
@@ -51,10 +58,7 @@ TEST(EvolutionFit, EachAxisHasItsOwnRows) {
   std::erase_if(all, [](const Trajectory& t) { return t.axes.size() != 1; });
   ASSERT_FALSE(all.empty());
   Trajectory& sheared = all.front();
-  const Deviator<double> N = sheared.axes.front();
-  Deviator<double> M = Deviator<double>::Unit(N.cwiseAbs().maxCoeff() == std::abs(N[0]) ? 1 : 0);
-  M = (M - N * N.dot(M)).normalized();
-  sheared.axes.push_back(M);
+  const Deviator<double> N = sheared.axes.front(), M = add_axis(sheared);
   for (TrajectoryRow& row : sheared.rows) {
     row.data.sigma += row.data.P * (0.003 * N + 0.004 * M);
     row.data.F += 0.01 * N + 0.02 * M;
@@ -71,6 +75,22 @@ TEST(EvolutionFit, EachAxisHasItsOwnRows) {
   for (const Channel& channel : block.channels) {
     const auto rows = misfit.segment(channel.first, channel.rows).array();
     EXPECT_LT((rows - expected.at(channel.quantity)).abs().maxCoeff(), 2e-8) << channel.quantity;
+  }
+}
+
+// A stress along a second axis, which no parameter of the law changes, says nothing of the fabric's saturation.
+TEST(EvolutionFit, SaturationIsJudgedByTheQuantitysOwnMisfit) {
+  auto all = trajectories(testing::synthetic_dataset(kTruth, small()));
+  for (Trajectory& t : all) {
+    if (t.axes.size() != 1) continue;
+    const Deviator<double> M = add_axis(t);
+    for (TrajectoryRow& row : t.rows) row.data.sigma += 0.5 * row.data.P * M;
+  }
+  LawParameters<double> law = kTruth;
+  const StageFit fit = run_stage(evolution_stage(all, {}, {}), law, {}, {});
+  for (const char* name :
+       {"stress_ratio_max.Q_limit", "stress_rate.Q_limit", "fabric_max.Q_limit", "fabric_rate.Q_limit"}) {
+    EXPECT_NE(estimate(fit, name).status, Status::not_identified) << name << ": " << estimate(fit, name).note;
   }
 }
 
