@@ -44,6 +44,8 @@ TEST(Rehearsals, KindFollowsFromThePath) {
   EXPECT_EQ(kind(0.70, {leg_to(Mode::UNI, 0.8)}), PathKind::monotone);
   EXPECT_EQ(kind(0.70, {leg(Mode::D2, 0.1), leg_to(Mode::ISO, 0.8), leg(Mode::D2, 0.1)}), PathKind::monotone);
   EXPECT_EQ(kind(0.70, {leg(Mode::D2, 0.1), leg(Mode::D3, 0.1)}), PathKind::turning) << "30 degrees";
+  EXPECT_EQ(kind(0.70, {leg(Mode::D2, 0.1), leg(Mode::D3, 0.1), leg(Mode::D2, 0.1)}), PathKind::turning)
+      << "30 degrees and back, which reverses nothing";
   EXPECT_EQ(kind(0.70, {leg(Mode::D2, 0.1), leg(Mode::D2, 0.1, true)}), PathKind::turning) << "once";
   EXPECT_EQ(kind(0.70, {leg(Mode::D2, 0.1), leg(Mode::D2, 0.1, true), leg(Mode::D2, 0.1)}), PathKind::cyclic);
   EXPECT_EQ(kind(0.70, {leg_to(Mode::UNI, 0.8), leg_to(Mode::UNI, 0.75, true)}), PathKind::unloading);
