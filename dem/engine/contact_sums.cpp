@@ -31,14 +31,11 @@ void set_averages(Observation& row, const ContactSums& sums, const Packing& p, d
 
   row.nu = volume_fraction(p);
   row.stress.tensor = sums.virial / V;
-  const double P = row.stress.tensor.trace() / 3;
+  row.fabric.tensor = sums.fabric / V;
+  const double P = set_following(row, N);
   row.P_star = p.size() > 0 ? 2 * mean_r / stiffness * P : 0;
   row.shape_stress = shape_factor(-row.stress.tensor);
   row.lode_stress = lode_angle(-row.stress.tensor, portable);
-
-  row.fabric.tensor = sums.fabric / V;
-  row.F_v = row.fabric.tensor.trace();
-  set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
   row.shape_fabric = shape_factor(-row.fabric.tensor);
   row.lode_fabric = lode_angle(-row.fabric.tensor, portable);
 

@@ -34,10 +34,7 @@ Observation completed(Observation row, const Observation* before, double stress_
       before == nullptr
           ? 0
           : before->shear_path + (deviator<double>(row.strain.tensor) - deviator<double>(before->strain.tensor)).norm();
-  const double P = row.stress.tensor.trace() / 3;
-  set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
-  row.P_star = P / stress_unit;
-  row.F_v = row.fabric.tensor.trace();
+  row.P_star = set_following(row, N) / stress_unit;
   return row;
 }
 

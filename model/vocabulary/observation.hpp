@@ -127,4 +127,13 @@ void set_ratios(Row& row, double P, const Deviator<double>& sigma, const Deviato
   row.F_par = sheared ? F.dot(N) : Observation::undefined;
 }
 
+/// What follows from the other columns of `row` alone: s_dev, s_par, F_v, F_dev, F_par from stress and fabric. Returns the
+/// pressure P = tr(sigma)/3 [Pa].
+inline double set_following(Observation& row, const Deviator<double>& N) {
+  const double P = row.stress.tensor.trace() / 3;
+  row.F_v = row.fabric.tensor.trace();
+  set_ratios(row, P, deviator<double>(row.stress.tensor), deviator<double>(row.fabric.tensor), N);
+  return P;
+}
+
 }  // namespace grainlaw

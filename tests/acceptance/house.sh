@@ -92,8 +92,8 @@ change() { # name most-product-files executable...
 }
 
 changes() {
-  # the column itself is one file, and the engine computes it in another
-  change column_of_a_series 2 unit_dem unit_app
+  # of a column that follows from the others of its row
+  change column_of_a_series 1 unit_dem unit_app
   change parameter_of_the_law 3 unit_model unit_fit
   change state_variable 5 unit_model unit_fit unit_predict
 }
