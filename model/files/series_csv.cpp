@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -16,18 +15,7 @@
 namespace grainlaw {
 namespace {
 
-/// The columns that follow from others.
-constexpr std::array<std::pair<const char*, double Observation::*>, 9> kFollowing{
-    {{"eps_vol", &Observation::eps_vol},
-     {"eps_dev", &Observation::eps_dev},
-     {"shear_path", &Observation::shear_path},
-     {"P_star", &Observation::P_star},
-     {"s_dev", &Observation::s_dev},
-     {"s_par", &Observation::s_par},
-     {"F_v", &Observation::F_v},
-     {"F_dev", &Observation::F_dev},
-     {"F_par", &Observation::F_par}}};
-
+/// `row` with all that follows from other columns.
 Observation completed(Observation row, const Observation* before, double stress_unit, const Deviator<double>& N) {
   set_strain(row, row.strain);
   row.shear_path =
@@ -90,10 +78,8 @@ class SeriesReader {
       reader_.refuse("time[s]", "does not grow from the row before");
     if (before != nullptr && row.segment < before->segment)
       reader_.refuse("segment", "falls behind that of the row before");
-    const Observation all = completed(row, before, packing_.stress_unit(), N_);
-    for (const auto& [column, value] : kFollowing) {
-      if (!given_.contains(column)) row.*value = all.*value;
-    }
+    const Observation read = std::exchange(row, completed(row, before, packing_.stress_unit(), N_));
+    for (const auto* column : columns_) column->set(row, column->get(read));
     if (const auto* column = infinite_column(row))
       reader_.refuse("",
                      fmt::format("{} becomes infinite, so large are the numbers that it follows from", column->name));
