@@ -44,7 +44,7 @@ fi
 check() { # PROGRAM[:FILTER]
   local program=${1%%:*} filter='*' begin=$SECONDS verdict=ok log
   [[ $1 == *:* ]] && filter=${1#*:}
-  log=build/valgrind/$(tr -cs '[:alnum:]_\n' - <<<"$1").log
+  log=build/valgrind/$(tr -c '[:alnum:]_\n' - <<<"$1").log
   valgrind --quiet --error-exitcode=99 --leak-check=full --show-leak-kinds=definite --errors-for-leak-kinds=definite \
     --num-callers=20 --child-silent-after-fork=yes --suppressions=build/valgrind/suppressions \
     "build/assertions/bin/$program" --gtest_filter="$filter" >"$log" 2>&1 || verdict=FAILED
