@@ -4,8 +4,8 @@
 # 'dem.lanes_*') into a copy of HEAD in build/mutants/ and runs the default suite but its checks of the sources up to its
 # first failure, the room's own tests first. Prints "mutant ID caught|survived|invalid by TEST" and at last
 # "mutants.caught N of M"; exit code 0 if none is invalid and 95 % are caught. Finished ones are kept in
-# build/mutants/results.txt and not run again for the same sources (pages aside), so that a stopped run goes on. --list:
-# prints them, if all fit the sources as they are; --check: do all compile?
+# build/mutants/results.txt and not run again for the same sources (the pages of figures aside, which
+# none of these tests reads), so that a stopped run goes on. --list: prints them, if all fit the sources; --check: do all compile?
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -72,7 +72,7 @@ copy_sources() {
   git -C "$tree" fetch -q "$root" HEAD
   git -C "$tree" checkout -q --force --detach FETCH_HEAD
   source_digest=$(git -C "$tree" ls-tree -r HEAD -- CMakeLists.txt cmake model dem fit predict chain app tests examples docs |
-    grep -vE $'\ttests/(mutants|acceptance|long)/|\\.md$' | sha256sum)
+    grep -vE $'\ttests/(mutants|acceptance|long)/|\tdocs/(validation|performance)(-log)?\\.md$' | sha256sum)
   source_digest=${source_digest%% *}
 }
 
