@@ -156,10 +156,12 @@ void inspect_parameters(const fs::path& file, Inspection& seen) {
   const CalibratedLaw law = read_parameters(file).law;
   std::vector<std::string> rungs;
   for (const Rung rung : calibrated_rungs(law)) rungs.push_back(to_string(rung));
-  seen.holds = {fmt::format("law of coupling {}, rungs {}, {}", to_string(law.coupling), fmt::join(rungs, ", "),
+  seen.holds = {fmt::format("law of coupling {}, rungs {}, {}", to_string(law.coupling),
+                            rungs.empty() ? "none" : fmt::format("{}", fmt::join(rungs, ", ")),
                             counted(law.rehearsals.size(), "rehearsal")),
                 fmt::format("calibrated at volume fractions {:.4g} to {:.4g}, deviatoric strain to {:.4g}",
                             law.range.nu_min, law.range.nu_max, law.range.eps_dev_max)};
+  for (std::string& line : left_out_rungs(law)) seen.holds.push_back(std::move(line));
   if (!law.converged) seen.holds.emplace_back("its calibration did not converge");
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "chain/rehearsals.hpp"
 #include "dem/runs/dataset_runs.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/digest.hpp"
@@ -28,7 +29,7 @@ using predict::Initial;
 
 constexpr int kFreePoints = 200;  // of a curve that no DEM run dictates
 
-/// The rung that is asked for, else reduced, evolution, and memory where it is calibrated; of a law without fabric the reduced one.
+/// The rung that is asked for, else those that are calibrated; where there is none, the first, which is refused by what it lacks.
 std::vector<Rung> rungs_of(const PredictionInput& input) {
   const bool decides = law_decides(input.path.path);
   if (input.model) {
@@ -40,10 +41,9 @@ std::vector<Rung> rungs_of(const PredictionInput& input) {
     }
     return {*input.model};
   }
-  if (!decides && !knows_fabric(input.law.parameters)) return {Rung::reduced};
-  std::vector<Rung> rungs{Rung::reduced, Rung::evolution};
-  if (has_values(input.law, "memory")) rungs.push_back(Rung::memory);
-  if (decides) rungs.erase(rungs.begin());  // a closed form of the strain
+  std::vector<Rung> rungs = calibrated_rungs(input.law);
+  if (decides) std::erase(rungs, Rung::reduced);  // a closed form of the strain
+  if (rungs.empty()) rungs = {decides ? Rung::evolution : Rung::reduced};
   return rungs;
 }
 
@@ -211,12 +211,13 @@ void add_rehearsals(const Law& law, predict::PredictionFolder& content) {
   }
 }
 
-/// What the law does not know of a path, whichever rung.
-void add_path_warnings(const CalibratedLaw& law, predict::PredictionFolder& content) {
-  if (!knows_fabric(law.parameters))
-    content.warnings.emplace_back(
-        "the law was calibrated without fabric: it says nothing of it, and the rungs beyond the reduced one "
-        "are not there");
+/// What the law does not know: by its data, and of the path.
+void add_warnings(const PredictionInput& input, predict::PredictionFolder& content) {
+  if (!knows_fabric(input.law.parameters))
+    content.warnings.emplace_back("the law was calibrated without fabric: it says nothing of it");
+  if (!input.model) {
+    for (std::string& line : left_out_rungs(input.law)) content.warnings.push_back(std::move(line));
+  }
   if (content.path.branch != Branch::unloading) {
     content.warnings.push_back(fmt::format(
         "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "
@@ -332,7 +333,7 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
   if (!input.new_runs) require_a_curve(content);  // runs that were made stay, with what became of the law
   add_advice(law, content);
   add_rehearsals(law, content);
-  add_path_warnings(input.law, content);
+  add_warnings(input, content);
   make_output_folder(output);
   if (input.finished_runs)
     content.dem = adopt(input.finished_runs->dataset, input.finished_runs->folder, make_subfolder(output, "dem"));

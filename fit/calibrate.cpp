@@ -189,6 +189,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   calibration.law.range = range_of(trajectories, data);
   calibration.law.converged = all_converged(calibration);
   forget_unknown_fabric(calibration.law);
+  for (std::string& line : left_out_rungs(calibration.law)) calibration.warnings.push_back(std::move(line));
   return calibration;
 }
 

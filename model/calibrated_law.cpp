@@ -1,9 +1,11 @@
 #include "model/calibrated_law.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "model/student.hpp"
 #include "model/vocabulary/error.hpp"
@@ -106,6 +108,20 @@ void require_parameters(const CalibratedLaw& law, Rung rung, const std::string& 
       name, parameter_table()[*missing].name, to_string(rung), note.empty() ? "" : ": ", note));
 }
 
+std::vector<std::string> left_out_rungs(const CalibratedLaw& law) {
+  std::map<std::size_t, std::vector<std::string>> rungs;  // by the parameter that they lack
+  for (const Rung rung : kRungs) {
+    if (const auto missing = missing_parameter(law, rung)) rungs[*missing].push_back(to_string(rung));
+  }
+  std::vector<std::string> lines;
+  for (const auto& [parameter, without] : rungs) {
+    const std::string& note = law.estimates[parameter].note;
+    lines.push_back(fmt::format("{} left out: parameters.{} is not identified{}{}", fmt::join(without, ", "),
+                                parameter_table()[parameter].name, note.empty() ? "" : ": ", note));
+  }
+  return lines;
+}
+
 std::optional<Rung> richest_rung(const CalibratedLaw& law) {
   std::optional<Rung> richest;
   for (const Rung rung : kRungs) {
@@ -126,7 +142,8 @@ std::string available_bands(const CalibratedLaw& law) {
   const std::string of_law = law.rehearsals.empty()
                                  ? "; the law's own error is not in them: no other path was rehearsed"
                                  : "; with the law's own error";
-  if (uncertain_parameters(law).empty()) return "none: the parameters have no covariance; calibrate again";
+  if (uncertain_parameters(law).empty())
+    return "none: the parameters have no covariance; calibrate on two packings or more";
   if (!std::isfinite(law.scatter.compression))
     return "95 %, of the mean curve only: the parameters have no scatter between packings; calibrate again, with two "
            "seeds or more" +

@@ -97,6 +97,10 @@ std::optional<std::size_t> missing_parameter(const CalibratedLaw& law, Rung rung
 /// stands for the law in the message, e.g. the file that it was read from.
 void require_parameters(const CalibratedLaw& law, Rung rung, const std::string& name);
 
+/// What the law lacks for a rung, a line for all rungs that lack the same: "evolution, memory left out: parameters.X is not
+/// identified", and what would identify it. None where it can serve all.
+std::vector<std::string> left_out_rungs(const CalibratedLaw& law);
+
 /// The richest rung that the law can serve; nothing when even the reduced one has parameters without a value.
 std::optional<Rung> richest_rung(const CalibratedLaw& law);
 

@@ -108,6 +108,33 @@ TEST_F(PathPrediction, WarnsOfSpin) {
   EXPECT_TRUE(warnings[0].starts_with("the path spins")) << warnings[0];
 }
 
+// Isotropic compression and shear at constant volume alone, as the paper's own calibration, do not tell A2.
+TEST_F(PathPrediction, LeavesOutRungsThatTheDataDoNotTell) {
+  PredictionInput poor = input({});
+  const auto forget = [&](const char* name) {
+    const std::size_t i = parameter_index(name);
+    *fields(poor.law.parameters)[i] = std::nan("");
+    poor.law.estimates[i] = {std::nan(""), std::nan(""), Status::not_identified, "add a test"};
+  };
+  forget("memory.k");
+  predict::PredictionFolder content = predict_path(poor, out(), {});
+  EXPECT_EQ(content.curves.size(), 2u);
+  EXPECT_EQ(content.warnings,
+            std::vector<std::string>{"memory left out: parameters.memory.k is not identified: add a test"});
+  forget("anisotropy.a2");
+  content = predict_path(poor, out(), {});
+  ASSERT_EQ(content.curves.size(), 1u);
+  EXPECT_EQ(content.curves[0].model, Rung::reduced);
+  EXPECT_EQ(
+      content.warnings,
+      std::vector<std::string>{"evolution, memory left out: parameters.anisotropy.a2 is not identified: add a test"});
+  poor.model = Rung::evolution;
+  EXPECT_THROW(predict_path(poor, out(), {}), InvalidInput);
+  poor.model.reset();
+  poor.path.path.segments[0].extent_kind = ExtentKind::target_stress_ratio;
+  EXPECT_THROW(predict_path(poor, out(), {}), InvalidInput) << "a closed form of the strain is none where that is free";
+}
+
 TEST_F(PathPrediction, LabelsAPathOutsideRehearsals) {
   PredictionInput rehearsed = input({});
   const Path other{0.73, Branch::unloading, {leg_to(Mode::UNI, 0.79)}};

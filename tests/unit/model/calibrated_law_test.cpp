@@ -77,6 +77,18 @@ TEST(CalibratedLaw, TheRichestRungIsTheLastThatLacksNothing) {
   EXPECT_FALSE(richest_rung(CalibratedLaw{}).has_value());
 }
 
+TEST(CalibratedLaw, RungsThatLackTheSameAreNamedInOneLine) {
+  using Lines = std::vector<std::string>;
+  CalibratedLaw law = complete();
+  EXPECT_EQ(left_out_rungs(law), Lines{});
+  forget(law, "memory.k");
+  const std::string memory = "memory left out: parameters.memory.k is not identified: not in these data";
+  EXPECT_EQ(left_out_rungs(law), Lines{memory});
+  forget(law, "anisotropy.a2");
+  EXPECT_EQ(left_out_rungs(law),
+            Lines{"evolution, memory left out: parameters.anisotropy.a2 is not identified: not in these data"});
+}
+
 TEST(CalibratedLaw, NoDecayIsNeededWithoutAnExponential) {
   CalibratedLaw law = complete();
   forget(law, "fabric_max.alpha");
