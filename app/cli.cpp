@@ -117,6 +117,7 @@ constexpr std::array kAboutItself{
 void add(CLI::App& app, const Command& command, Common& common, Task& chosen) {
   CLI::App* added = app.add_subcommand(command.name, command.description);
   const Task task = command.declare(*added);
+  for (CLI::Option* option : added->get_options()) option->check(not_empty());
   if (command.kind == Kind::simulates) {
     add_checkpoints(*added, common);
     add_lammps(*added, common);

@@ -38,6 +38,13 @@ CLI::Validator between(double least, double most) {
   return {check, range, range};
 }
 
+CLI::Validator not_empty() {
+  return {[](const std::string& text) -> std::string {
+            return text.empty() ? "is empty; is a variable of the shell not set?" : "";
+          },
+          ""};
+}
+
 std::vector<std::uint64_t> seeds_of(const std::string& option, const std::string& text) {
   const auto refuse = [&](const std::string& why) {
     throw CLI::ValidationError(option, fmt::format("got '{}'; {}", one_line(text, 60), why));

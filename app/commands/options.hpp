@@ -20,6 +20,9 @@ std::size_t chosen(const std::string& option, const std::string& text, const std
 /// Checks that a number lies in [least, most]; its description is "LEAST to MOST".
 CLI::Validator between(double least, double most);
 
+/// Refuses an empty word, as a variable of the shell leaves it that is not set.
+CLI::Validator not_empty();
+
 /// "201-205" or "1,3,7-9" as seeds, in that order. Throws CLI::ValidationError for what is neither, and for more than 1000.
 std::vector<std::uint64_t> seeds_of(const std::string& option, const std::string& text);
 

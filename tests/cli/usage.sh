@@ -51,6 +51,10 @@ slip "--initial: got 'best'; give law or measured" predict a b -o out --initial 
 slip "--threads: got '0'; give a number, 1 to 1024" calibrate x.json -o out --threads 0
 slip "unknown command 'calibrat'" help calibrat
 for seeds in 5-3 1- -4 1,,2 x 1-2000 ''; do slip '--seeds' predict a b -o out "--seeds=$seeds"; done
+# a variable of the shell that is not set
+slip "--output: is empty; is a variable of the shell not set?" predict a b -o ""
+slip "PATH: is empty; is a variable of the shell not set?" predict a "" -o out
+slip "is empty; is a variable of the shell not set?" check ""
 # a result that cannot be written is no success
 if [[ -w /dev/full ]]; then
   echo '{"spheres": "s.csv", "cell": [[0.01,0,0],[0,0.01,0],[0,0,0.01]]}' >t.json
