@@ -8,8 +8,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # Each stage and its minutes on two cores, compiler cache empty, where no run has said it here.
-stages=(release 17  long 25  clang 30  assertions 35  asan-ubsan 60  tsan 80  valgrind 40  fuzz 32
-        pipeline 20  engine 15  ground 60  truth 15  trust 90  own_data 15  page 30  cluster 30  house 25  calibration 55
+stages=(release 17  long 25  clang 30  assertions 35  asan-ubsan 60  tsan 110  valgrind 60  fuzz 32
+        pipeline 20  engine 15  ground 60  truth 15  trust 330  own_data 15  page 30  cluster 30  house 25  calibration 55
         law 150)
 folder=build/full
 export UBSAN_OPTIONS=print_stacktrace=1
