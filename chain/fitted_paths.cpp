@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "chain/rehearsals.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/output.hpp"

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "chain/import/import.hpp"
-#include "chain/rehearsals.hpp"
 #include "chain/report_input.hpp"
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"

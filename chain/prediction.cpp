@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "chain/rehearsals.hpp"
 #include "dem/runs/dataset_runs.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/digest.hpp"

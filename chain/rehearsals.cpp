@@ -87,14 +87,6 @@ void adopt_rehearsals(const fs::path& from, const fs::path& to) {
   }
 }
 
-std::vector<Rung> calibrated_rungs(const CalibratedLaw& law) {
-  std::vector<Rung> rungs;
-  for (const Rung rung : kRungs) {
-    if (!missing_parameter(law, rung)) rungs.push_back(rung);
-  }
-  return rungs;
-}
-
 void rehearse(CalibratedLaw& law, const std::vector<predict::RehearsalRuns>& paths, const Execution& execution) {
   law.rehearsals.clear();
   const std::vector<Rung> rungs = calibrated_rungs(law);

@@ -31,9 +31,6 @@ void adopt_rehearsals(const std::filesystem::path& from, const std::filesystem::
 /// warning.
 void rehearse(CalibratedLaw& law, const std::vector<predict::RehearsalRuns>& paths, const Execution& execution);
 
-/// Rungs whose parameters are all known, cheapest first.
-std::vector<Rung> calibrated_rungs(const CalibratedLaw& law);
-
 /// Adds the runs in `given` as one more rehearsal to parameters.json, which is replaced whole, and as a data set to
 /// dataset/rehearsals/`name` beside it, where a new calibration of that data set finds it. The same path, or one of the same
 /// name, is replaced. Throws InvalidInput for runs of several paths, and NotConverged where every rung fails on it.

@@ -122,12 +122,12 @@ std::vector<std::string> left_out_rungs(const CalibratedLaw& law) {
   return lines;
 }
 
-std::optional<Rung> richest_rung(const CalibratedLaw& law) {
-  std::optional<Rung> richest;
+std::vector<Rung> calibrated_rungs(const CalibratedLaw& law) {
+  std::vector<Rung> rungs;
   for (const Rung rung : kRungs) {
-    if (!missing_parameter(law, rung)) richest = rung;
+    if (!missing_parameter(law, rung)) rungs.push_back(rung);
   }
-  return richest;
+  return rungs;
 }
 
 std::vector<std::size_t> uncertain_parameters(const CalibratedLaw& law) {

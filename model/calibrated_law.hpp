@@ -101,8 +101,8 @@ void require_parameters(const CalibratedLaw& law, Rung rung, const std::string& 
 /// identified", and what would identify it. None where it can serve all.
 std::vector<std::string> left_out_rungs(const CalibratedLaw& law);
 
-/// The richest rung that the law can serve; nothing when even the reduced one has parameters without a value.
-std::optional<Rung> richest_rung(const CalibratedLaw& law);
+/// Rungs whose parameters all have values, cheapest first; none when even the reduced one lacks some.
+std::vector<Rung> calibrated_rungs(const CalibratedLaw& law);
 
 /// Indices in parameter_table() of the parameters that have an error: those that bands are made of.
 std::vector<std::size_t> uncertain_parameters(const CalibratedLaw& law);

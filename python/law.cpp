@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/files/execution.hpp"
@@ -59,9 +60,9 @@ struct Batch {
 
 /// The rung of the argument `model`, by default the richest that the law can serve.
 Rung rung_of(const Law& self, py::handle model) {
-  if (model.is_none() && self.richest) return *self.richest;
+  if (model.is_none() && !self.rungs.empty()) return self.rungs.back();
   const Rung rung = model.is_none() ? Rung::reduced : choice_of<Rung>(model, "model");
-  if (!self.serves[static_cast<std::size_t>(rung)]) require_parameters(self.law, rung, self.name);
+  if (std::ranges::find(self.rungs, rung) == self.rungs.end()) require_parameters(self.law, rung, self.name);
   return rung;
 }
 
@@ -255,9 +256,7 @@ void add_batch(py::module_& module) {
 }  // namespace
 
 Law::Law(CalibratedLaw read, fs::path source, std::string called)
-    : law(std::move(read)), file(std::move(source)), name(std::move(called)), richest(richest_rung(law)) {
-  for (const Rung rung : kRungs) serves[static_cast<std::size_t>(rung)] = !missing_parameter(law, rung);
-}
+    : law(std::move(read)), file(std::move(source)), name(std::move(called)), rungs(calibrated_rungs(law)) {}
 
 std::shared_ptr<const Law> law_of(py::handle object) {
   if (py::isinstance<Law>(object)) return object.cast<std::shared_ptr<Law>>();
@@ -291,9 +290,7 @@ void add_law(py::module_& module) {
       .def_property_readonly("models",
                              [](const Law& self) {
                                py::list names;
-                               for (const Rung rung : kRungs) {
-                                 if (self.serves[static_cast<std::size_t>(rung)]) names.append(to_string(rung));
-                               }
+                               for (const Rung rung : self.rungs) names.append(to_string(rung));
                                return names;
                              })
       .def("with_values", &changed, py::arg("values"), "The law with these values, which have no errors then.")

@@ -3,7 +3,6 @@
 
 #include <pybind11/pybind11.h>
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -32,10 +31,9 @@ struct Law {
   Law(CalibratedLaw read, std::filesystem::path source, std::string called);
 
   CalibratedLaw law;
-  std::filesystem::path file;                ///< where it stands; empty when it was changed since
-  std::string name;                          ///< in messages
-  std::array<bool, kRungs.size()> serves{};  ///< whether all parameters of the rung have values
-  std::optional<Rung> richest;               ///< of those
+  std::filesystem::path file;  ///< where it stands; empty when it was changed since
+  std::string name;            ///< in messages
+  std::vector<Rung> rungs;     ///< those that are calibrated, the richest last
 };
 
 /// grainlaw.Prediction.

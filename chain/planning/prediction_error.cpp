@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "model/student.hpp"
 #include "predict/bands.hpp"
@@ -66,18 +65,18 @@ PredictionError prediction_error(const CalibratedLaw& law, const Path& path,
                                  const std::vector<TestRecord>& rehearsals) {
   PredictionError error;
   const auto segments = resolve(path);
-  const std::optional<Rung> rung = richest_rung(law);
-  if (!rung) {
+  const std::vector<Rung> rungs = calibrated_rungs(law);
+  if (rungs.empty()) {
     error.quantities.push_back({"P_star", kNone, kNone, kNone, kNone});
     if (shear_direction(segments).norm() == 0) return error;
     for (const char* quantity : {"s_par", "F_par"}) error.quantities.push_back({quantity, kNone, kNone, kNone, kNone});
     return error;
   }
-  error.rung = *rung;
+  error.rung = rungs.back();
   const predict::Prediction prediction =
       predict::predict_with_bands(error.rung, law, segments, predict::state_from_law(law.parameters, path.nu), true,
                                   predict::uniform_points(segments, kPointsPerSegment), {});
-  const auto rehearsed = along(law, *rung, rehearsals);
+  const auto rehearsed = along(law, error.rung, rehearsals);
   const bool shears = prediction.rows.back().shear_path > kFromShear;
   for (const predict::ComparedQuantity& quantity : predict::kComparedQuantities) {
     double largest = 0, widest = 0, squares = 0, rows = 0;

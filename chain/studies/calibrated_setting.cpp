@@ -62,7 +62,7 @@ SettingOutcome calibrated_setting(const std::string& name, const Changes& change
     if (path) {
       for (StudyQuantity& quantity : outcome.quantities) quantity.in_error = false;
       require_parameters(calibration.law, Rung::reduced, "calibration");
-      const Rung rung = richest_rung(calibration.law).value();
+      const Rung rung = calibrated_rungs(calibration.law).back();
       const auto predicted = predicted_quantities(calibration, *path, rung, outcome.seeds.size(), control);
       outcome.quantities.insert(outcome.quantities.begin(), predicted.begin(), predicted.end());
       outcome.model = to_string(rung);

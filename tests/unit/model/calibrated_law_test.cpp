@@ -65,16 +65,17 @@ TEST(CalibratedLaw, EachRungLacksWhatItsEquationsRead) {
     EXPECT_EQ(rungs_without(name, Coupling::energy), all) << name;
 }
 
-TEST(CalibratedLaw, TheRichestRungIsTheLastThatLacksNothing) {
+TEST(CalibratedLaw, TheCalibratedRungsAreThoseThatLackNothing) {
+  using Rungs = std::vector<Rung>;
   CalibratedLaw law = complete();
-  EXPECT_EQ(richest_rung(law), Rung::memory);
+  EXPECT_EQ(calibrated_rungs(law), (Rungs{Rung::reduced, Rung::evolution, Rung::memory}));
   forget(law, "memory.k");
-  EXPECT_EQ(richest_rung(law), Rung::evolution);
+  EXPECT_EQ(calibrated_rungs(law), (Rungs{Rung::reduced, Rung::evolution}));
   forget(law, "anisotropy.a2");
-  EXPECT_EQ(richest_rung(law), Rung::reduced);
+  EXPECT_EQ(calibrated_rungs(law), Rungs{Rung::reduced});
   forget(law, "pressure.p0");
-  EXPECT_FALSE(richest_rung(law).has_value());
-  EXPECT_FALSE(richest_rung(CalibratedLaw{}).has_value());
+  EXPECT_TRUE(calibrated_rungs(law).empty());
+  EXPECT_TRUE(calibrated_rungs(CalibratedLaw{}).empty());
 }
 
 TEST(CalibratedLaw, RungsThatLackTheSameAreNamedInOneLine) {
