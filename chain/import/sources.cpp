@@ -23,7 +23,8 @@ std::string shown(const ForeignColumn& column) { return one_line(column.title, 6
 
 TableLayout layout_of(const SeriesMapping& how) {
   constexpr std::array kCharacters{',', ';', '\t', ' '};
-  return {how.delimiter ? kCharacters.at(static_cast<std::size_t>(*how.delimiter)) : '\0', how.array, how.names};
+  return {how.delimiter ? kCharacters.at(static_cast<std::size_t>(*how.delimiter)) : '\0', how.array, how.names,
+          how.decimal == Decimal::comma ? ',' : '.'};
 }
 
 }  // namespace
@@ -189,8 +190,9 @@ double Sources::value(std::size_t row, const std::string& quantity, bool may_be_
   const double number = column.values[row];
   if (std::isfinite(number)) return number * found->second.factor;
   if (!column.bad.empty() && row == column.bad_row)
-    throw InvalidInput(fmt::format("{}: '{}' is no number; write it like 1.5e-3, with a decimal point",
-                                   place(row, quantity), column.bad));
+    throw InvalidInput(
+        fmt::format("{}: '{}' is no number; write it like 1.5e-3, with a decimal point, or as decimal in {} says",
+                    place(row, quantity), column.bad, mapping_));
   if (may_be_undefined && std::isnan(number)) return kUndefined;
   throw InvalidInput(fmt::format("{}: is {}; remove the row or repeat the test", place(row, quantity),
                                  std::isnan(number) ? "undefined" : "infinite"));

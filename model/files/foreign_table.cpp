@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -36,21 +37,29 @@ std::vector<std::string_view> words_of(std::string_view line, char delimiter) {
 }
 
 /// Semicolons and tabs come before commas: who uses them writes no commas but in numbers.
-char delimiter_of(std::string_view line) {
+char delimiter_of(std::string_view line, char decimal) {
   for (const char delimiter : {';', '\t', ','}) {
-    if (trimmed(line).find(delimiter) != std::string_view::npos) return delimiter;
+    if (delimiter != decimal && trimmed(line).find(delimiter) != std::string_view::npos) return delimiter;
   }
   return ' ';
 }
 
 /// A number, NaN for an empty word; nothing for what is neither.
-std::optional<double> number_or_nan(std::string_view word) {
-  return word.empty() ? std::numeric_limits<double>::quiet_NaN() : decimal(word);
+std::optional<double> number_or_nan(std::string_view word, char decimal_sign) {
+  if (word.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (decimal_sign == '.') return decimal(word);
+  if (word.find('.') != std::string_view::npos) return std::nullopt;  // of thousands, or this table has decimal points
+  std::string pointed(word);
+  std::ranges::replace(pointed, decimal_sign, '.');
+  return decimal(pointed);
 }
 
 class TextTable {
  public:
-  TextTable(const std::string& name, const TableLayout& layout) : delimiter_(layout.delimiter) { table_.name = name; }
+  TextTable(const std::string& name, const TableLayout& layout)
+      : delimiter_(layout.delimiter), decimal_(layout.decimal) {
+    table_.name = name;
+  }
 
   ForeignTable read(std::string_view text) {
     if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
@@ -83,7 +92,7 @@ class TextTable {
       return;
     }
     line = trimmed(line.substr(0, line.find('#')));
-    if (delimiter_ == 0) delimiter_ = delimiter_of(line);
+    if (delimiter_ == 0) delimiter_ = delimiter_of(line, decimal_);
     const std::vector<std::string_view> words = words_of(line, delimiter_);
     if (words.size() > kMaxCsvColumns) refuse(fmt::format("more than {} columns", kMaxCsvColumns));
     if (table_.columns.empty() && begin(words)) return;
@@ -93,7 +102,7 @@ class TextTable {
   /// The columns by the first line; true when it is their header.
   bool begin(const std::vector<std::string_view>& words) {
     bool header = false;
-    for (const std::string_view word : words) header = header || !number_or_nan(word);
+    for (const std::string_view word : words) header = header || !number_or_nan(word, decimal_);
     std::vector<std::string_view> titles;
     if (header)
       titles = words;
@@ -109,13 +118,13 @@ class TextTable {
   void add_row(const std::vector<std::string_view>& words) {
     if (words.size() != table_.columns.size())
       refuse(
-          fmt::format("{} words where there are {} columns; numbers have decimal points, and what is undefined is "
+          fmt::format("{} words where there are {} columns; numbers have decimal {}s, and what is undefined is "
                       "nan or empty between delimiters",
-                      words.size(), table_.columns.size()));
+                      words.size(), table_.columns.size(), decimal_ == '.' ? "point" : "comma"));
     if (table_.rows() == kMaxCsvRows) refuse(fmt::format("more than {} rows; thin the series", kMaxCsvRows));
     for (std::size_t i = 0; i < words.size(); ++i) {
       ForeignColumn& column = table_.columns[i];
-      const std::optional<double> value = number_or_nan(words[i]);
+      const std::optional<double> value = number_or_nan(words[i], decimal_);
       if (!value && column.bad.empty()) {
         column.bad_row = column.values.size();
         column.bad = one_line(words[i], 40);
@@ -125,7 +134,7 @@ class TextTable {
     table_.lines.push_back(line_);
   }
 
-  char delimiter_;
+  char delimiter_, decimal_;
   ForeignTable table_;
   std::string_view comment_;
   std::size_t line_ = 0;

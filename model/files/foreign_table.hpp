@@ -34,13 +34,14 @@ struct TableLayout {
   char delimiter = 0;                   ///< of a text; ' ' any blanks; 0: seen from the first line
   std::string array = {};               ///< of an .npz
   std::vector<std::string> names = {};  ///< of the columns; empty: a header, or numbers
+  char decimal = '.';                   ///< in a text's numbers; ',' where they are written so, and never both
 };
 
 /// By the file's first bytes. Throws InvalidInput naming file and line, or what of the format is not as it must be.
 ForeignTable read_foreign_table(const std::filesystem::path& file, const TableLayout& layout);
 
 /// A text: '#' begins a comment, blank lines are skipped. The header is the first line if it has a word that is no number, or
-/// a comment just before the first row with as many words as there are columns. Numbers have decimal points.
+/// a comment just before the first row with as many words as there are columns.
 ForeignTable table_of_text(std::string_view text, const std::string& name, const TableLayout& layout);
 
 }  // namespace grainlaw

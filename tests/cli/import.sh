@@ -42,6 +42,13 @@ same_law() {
 "$grainlaw" calibrate --dataset imported -o law-imported --quiet >/dev/null
 same_law law-ours law-imported 0.01
 
+# With decimal commas, where that is said.
+mkdir commas
+for file in theirs/*.csv; do sed '3,$ y/./,/' "$file" >"commas/$(basename "$file")"; done
+jq '.series.decimal = "comma" | .tests[].series.file |= sub("theirs"; "commas")' mapping.json >commas.json
+"$grainlaw" import commas.json -o imported-commas >/dev/null || fail "decimal commas"
+for file in imported/*s1.csv; do cmp "$file" "imported-commas/$(basename "$file")" || fail "decimal commas differ"; done
+
 # The same as .npz, where numpy is.
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
   mkdir npz
@@ -103,6 +110,8 @@ refused() {
   for part in "$@"; do grep -qF -- "$part" bad/error || fail "$name: '$part' is not in: $(cat bad/error)"; done
 }
 refused 'decimal comma' . '5s/\./,/' 'D2-0.71-s1.csv: line 5' 'decimal point'
+refused 'decimal points' '.series.decimal = "comma"' '' 'is no number' 'as decimal in bad/mapping.json says'
+refused 'two kinds of commas' '.series.decimal = "comma" | .series.delimiter = "comma"' '' 'tests[0].series: delimiter and decimal'
 refused 'truncated row' . '7s/;[^;]*$//' 'line 7' '20 words where there are 21 columns'
 refused 'undefined stress' . '9s/^([^;]*;[^;]*;[^;]*;[^;]*;[^;]*;)[^;]*/\1nan/' "line 9, column 'szz[kPa]'" 'remove the row'
 refused 'time goes back' . '9s/^[^;]*/0/' "line 9, column 't'" 'sort the rows'

@@ -44,6 +44,20 @@ TEST(ForeignText, HasItsHeaderInAComment) {
   expect_titles(text("\xEF\xBB\xBF\"a\";\"b\"\n1;2\n"), {"a", "b"});
 }
 
+TEST(ForeignText, HasDecimalCommasWhereThatIsSaid) {
+  const TableLayout commas{.decimal = ','};
+  for (const std::string d : {";", "\t", " "}) {
+    const ForeignTable table = text("a" + d + "b\n1,5" + d + "-2,5e-3\n3" + d + ",5\n", commas);
+    EXPECT_EQ(table.columns[0].values, (std::vector<double>{1.5, 3})) << d;
+    EXPECT_EQ(table.columns[1].values, (std::vector<double>{-0.0025, 0.5})) << d;
+  }
+  for (const std::string word : {"1.5", "1.234,5", "1,234,567"}) {
+    EXPECT_EQ(text("a;b\n1;" + word + "\n", commas).columns[1].bad, word);
+  }
+  EXPECT_EQ(text("a;b\n1;1,5\n").columns[1].bad, "1,5");
+  EXPECT_NE(text_refusal("a b\n1,5\n", commas).find("have decimal commas"), std::string::npos);
+}
+
 TEST(ForeignText, KeepsWhatIsNoNumberByName) {
   const ForeignTable table = text("a,b\n1,\nnan,x\n");
   EXPECT_TRUE(std::isnan(table.columns[0].values[1]) && std::isnan(table.columns[1].values[0]));
