@@ -243,6 +243,7 @@ int run_command(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {  // --help, --version
     std::ostringstream text;
+    text.exceptions(std::ios::badbit);
     app.exit(wish, text, text);
     return say(text.str());
   } catch (const CLI::ParseError& error) {

@@ -143,6 +143,7 @@ std::string class_of(const Table& table) {
 std::size_t longest_word(const Text& heading) {
   std::size_t longest = 0;
   std::istringstream words(to_plain(heading));
+  words.exceptions(std::ios::badbit);
   for (std::string word; words >> word;) longest = std::max(longest, character_count(plain(word)));
   return longest;
 }
@@ -283,7 +284,9 @@ std::string page_html(const Page& page) {
   root.set("lead", html_list(page.lead));
   root.set("sections", sections);
   kainjow::mustache::mustache view{kTemplate};
-  return view.render(root);
+  std::string html;
+  view.render(root, [&](const std::string& text) { html += text; });
+  return html;
 }
 
 }  // namespace grainlaw::app::report

@@ -136,6 +136,7 @@ QueueState queue_state(const std::vector<std::string>& jobs) {
   const Answer answer = answer_of("squeue --me --noheader --array --format='%F %T'");
   QueueState state{answer.exit_code == 0};
   std::istringstream lines(answer.text);
+  lines.exceptions(std::ios::badbit);
   for (std::string job, word; lines >> job >> word;) {
     if (std::find(jobs.begin(), jobs.end(), job) == jobs.end()) continue;
     ++(word == "PENDING" || word.starts_with("REQUEUE") ? state.waiting : state.running);

@@ -76,6 +76,7 @@ void weigh(const Frame& frame, const DeckSpheres& spheres, Look& look) {
 Look read_look(const std::filesystem::path& folder, const std::string& mark, const State& like,
                const DeckSpheres& spheres, const Eigen::Matrix3d& L, const Deviator<double>& N) {
   std::istringstream words(mark);
+  words.exceptions(std::ios::badbit);
   std::string name;
   Eigen::Vector3d stress;
   words >> name >> stress[0] >> stress[1] >> stress[2];

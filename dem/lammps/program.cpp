@@ -48,6 +48,7 @@ std::string first_of(std::initializer_list<std::string> texts) {
 fs::path on_path(const std::string& name) {
   if (name.find('/') != std::string::npos) return is_executable(name) ? fs::absolute(name) : fs::path();
   std::istringstream folders(variable("PATH"));
+  folders.exceptions(std::ios::badbit);
   for (std::string folder; std::getline(folders, folder, ':');) {
     if (const fs::path file = fs::path(folder) / name; is_executable(file)) return fs::absolute(file);
   }
@@ -118,6 +119,7 @@ LammpsProgram find_lammps(const std::string& executable, const std::string& laun
     throw InvalidInput(fmt::format("engine: lammps: no executable '{}'{}; {}", shown,
                                    name.find('/') == std::string::npos ? " on PATH" : "", kRemedy));
   std::istringstream words(first_of({launcher, variable("GRAINLAW_LAUNCHER")}));
+  words.exceptions(std::ios::badbit);
   for (std::string word; words >> word;) program.launcher.push_back(word);
   if (!program.launcher.empty() && on_path(program.launcher[0]).empty())
     throw InvalidInput(fmt::format("--launcher: no executable '{}'; give words as \"mpirun -n 2\", without a shell",

@@ -125,6 +125,12 @@ done
 clean_tree
 echo 'OrderedJson document;' >>"$tree/fit/calibrate.cpp"
 expect check_files.sh 'begin it as OrderedJson::object'
+clean_tree
+echo 'std::istringstream words(text);' >>"$tree/fit/calibrate.cpp"
+expect check_files.sh 'follow it by words.exceptions(std::ios::badbit);'
+clean_tree
+echo 'return view.render(root);' >>"$tree/fit/calibrate.cpp"
+expect check_files.sh 'render into a string by a function'
 
 # sow_text PAGE TEXT PATTERN: adds a line to a page.
 sow_text() {
