@@ -38,7 +38,7 @@ SeriesMapping series_from(const Json& json, const fs::path& folder) {
   if (json.contains("file")) series.file = folder / json["file"].get<std::string>();
   if (json.contains("delimiter"))
     series.delimiter = value_of<Delimiter>(json["delimiter"].get<std::string>(), "delimiter");
-  series.decimal = value_of<Decimal>(json.value("decimal", "point"), "decimal");
+  series.decimal = json.value("decimal", "point") == "comma" ? ',' : '.';
   series.array = json.value("array", "");
   series.names = json.value("names", std::vector<std::string>{});
   const Json columns = json.value("columns", Json::object());
@@ -144,7 +144,7 @@ TestMapping test_from(const Json& document, const Json& json, const std::map<std
         series.is_null() ? "misses its data; give series or particles" : "has series and particles; give one of them"));
   if (series.is_null()) return test;
   test.series = series_from(series, mapping.folder);
-  if (test.series->decimal == Decimal::comma && test.series->delimiter == Delimiter::comma)
+  if (test.series->decimal == ',' && test.series->delimiter == Delimiter::comma)
     throw InvalidInput(
         fmt::format("{}.series: delimiter and decimal are both commas; part the columns otherwise", where));
   return test;

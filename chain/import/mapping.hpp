@@ -21,9 +21,6 @@ constexpr auto names_of(Positive) { return std::array{"compression", "tension"};
 enum class Delimiter { comma, semicolon, tab, blank };
 constexpr auto names_of(Delimiter) { return std::array{"comma", "semicolon", "tab", "blank"}; }
 
-enum class Decimal { point, comma };
-constexpr auto names_of(Decimal) { return std::array{"point", "comma"}; }
-
 /// Where a quantity stands.
 struct ColumnChoice {
   std::string name;                 ///< of the column; empty: by number
@@ -35,7 +32,7 @@ struct ColumnChoice {
 struct SeriesMapping {
   std::filesystem::path file;                   ///< as it is opened; empty: not given
   std::optional<Delimiter> delimiter;           ///< none: seen from the first line
-  Decimal decimal = Decimal::point;             ///< sign before the decimals of a text's numbers
+  char decimal = '.';                           ///< sign before the decimals of a text's numbers, . or ,
   std::string array;                            ///< of an .npz; empty: its 1-D arrays are the columns
   std::vector<std::string> names;               ///< of the columns of a table without a header; empty: it has one
   std::map<std::string, ColumnChoice> columns;  ///< by quantity; empty: guessed
