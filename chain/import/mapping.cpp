@@ -39,6 +39,7 @@ SeriesMapping series_from(const Json& json, const fs::path& folder) {
   if (json.contains("delimiter"))
     series.delimiter = value_of<Delimiter>(json["delimiter"].get<std::string>(), "delimiter");
   series.decimal = json.value("decimal", "point") == "comma" ? ',' : '.';
+  series.skip = json.value("skip", std::size_t{0});
   series.array = json.value("array", "");
   series.names = json.value("names", std::vector<std::string>{});
   const Json columns = json.value("columns", Json::object());

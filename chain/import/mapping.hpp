@@ -33,6 +33,7 @@ struct SeriesMapping {
   std::filesystem::path file;                   ///< as it is opened; empty: not given
   std::optional<Delimiter> delimiter;           ///< none: seen from the first line
   char decimal = '.';                           ///< sign before the decimals of a text's numbers, . or ,
+  std::size_t skip = 0;                         ///< lines of a text above its header
   std::string array;                            ///< of an .npz; empty: its 1-D arrays are the columns
   std::vector<std::string> names;               ///< of the columns of a table without a header; empty: it has one
   std::map<std::string, ColumnChoice> columns;  ///< by quantity; empty: guessed

@@ -24,7 +24,7 @@ std::string shown(const ForeignColumn& column) { return one_line(column.title, 6
 TableLayout layout_of(const SeriesMapping& how) {
   constexpr std::array kCharacters{',', ';', '\t', ' '};
   return {how.delimiter ? kCharacters.at(static_cast<std::size_t>(*how.delimiter)) : '\0', how.array, how.names,
-          how.decimal};
+          how.decimal, how.skip};
 }
 
 }  // namespace

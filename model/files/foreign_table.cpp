@@ -57,7 +57,7 @@ std::optional<double> number_or_nan(std::string_view word, char decimal_sign) {
 class TextTable {
  public:
   TextTable(const std::string& name, const TableLayout& layout)
-      : delimiter_(layout.delimiter), decimal_(layout.decimal) {
+      : delimiter_(layout.delimiter), decimal_(layout.decimal), skip_(layout.skip) {
     table_.name = name;
   }
 
@@ -72,7 +72,7 @@ class TextTable {
       if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
       ++line_;
       if (line.size() > kMaxCsvLine) refuse(fmt::format("is longer than {} bytes", kMaxCsvLine));
-      take(trimmed(line));
+      if (line_ > skip_) take(trimmed(line));
     }
     if (table_.rows() == 0)
       throw InvalidInput(
@@ -95,8 +95,12 @@ class TextTable {
     if (delimiter_ == 0) delimiter_ = delimiter_of(line, decimal_);
     const std::vector<std::string_view> words = words_of(line, delimiter_);
     if (words.size() > kMaxCsvColumns) refuse(fmt::format("more than {} columns", kMaxCsvColumns));
-    if (table_.columns.empty() && begin(words)) return;
-    add_row(words);
+    if (table_.columns.empty()) {
+      below_header_ = begin(words);
+      if (below_header_) return;
+    }
+    if (!below_header_ || !are_units(words)) add_row(words);
+    below_header_ = false;
   }
 
   /// The columns by the first line; true when it is their header.
@@ -115,11 +119,29 @@ class TextTable {
     return header;
   }
 
+  /// True when the line just below the header is one of units, which the columns then have.
+  bool are_units(const std::vector<std::string_view>& words) {
+    bool any = false;
+    for (const std::string_view word : words) {
+      if (word.empty()) continue;
+      const auto digit = word.find_first_of("0123456789");
+      const bool begins_as_number = digit != std::string_view::npos && word.find_first_not_of("+-.,") == digit;
+      if (begins_as_number || number_or_nan(word, decimal_)) return false;  // 1,5 is a number of others
+      any = true;
+    }
+    if (!any || words.size() != table_.columns.size()) return false;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const bool bracketed = words[i].size() > 2 && (words[i].front() == '[' || words[i].front() == '(');
+      table_.columns[i].unit = trimmed(bracketed ? words[i].substr(1, words[i].size() - 2) : words[i]);
+    }
+    return true;
+  }
+
   void add_row(const std::vector<std::string_view>& words) {
     if (words.size() != table_.columns.size())
       refuse(
           fmt::format("{} words where there are {} columns; numbers have decimal {}s, and what is undefined is "
-                      "nan or empty between delimiters",
+                      "nan or empty between delimiters; lines above the header are left out by skip",
                       words.size(), table_.columns.size(), decimal_ == '.' ? "point" : "comma"));
     if (table_.rows() == kMaxCsvRows) refuse(fmt::format("more than {} rows; thin the series", kMaxCsvRows));
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -137,7 +159,8 @@ class TextTable {
   char delimiter_, decimal_;
   ForeignTable table_;
   std::string_view comment_;
-  std::size_t line_ = 0;
+  std::size_t line_ = 0, skip_;
+  bool below_header_ = false;
 };
 
 /// Titles by what the layout says, all different.
@@ -146,11 +169,13 @@ void set_titles(const TableLayout& layout, ForeignTable& table) {
     throw InvalidInput(fmt::format("{}: has {} columns where names has {}; name each", table.name, table.columns.size(),
                                    layout.names.size()));
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (!layout.names.empty()) table.columns[i].title = layout.names[i];
+    std::string& title = table.columns[i].title;
+    if (!layout.names.empty()) title = layout.names[i];
+    if (!table.columns[i].unit.empty()) title += fmt::format("[{}]", table.columns[i].unit);
     for (std::size_t k = 0; k < i; ++k) {
-      if (table.columns[k].title == table.columns[i].title)
+      if (table.columns[k].title == title)
         throw InvalidInput(fmt::format("{}: columns {} and {} are both called '{}'; rename one, or give names",
-                                       table.name, k + 1, i + 1, one_line(table.columns[i].title, 60)));
+                                       table.name, k + 1, i + 1, one_line(title, 60)));
     }
   }
 }

@@ -14,6 +14,7 @@ struct ForeignColumn {
   std::vector<double> values;  ///< NaN where empty or no number
   std::size_t bad_row = 0;     ///< first row, from 0, that holds something else than a number, where `bad` is not empty
   std::string bad;             ///< what stands there
+  std::string unit = {};       ///< in a text's line of units; then part of the title
 };
 
 struct ForeignTable {
@@ -35,13 +36,15 @@ struct TableLayout {
   std::string array = {};               ///< of an .npz
   std::vector<std::string> names = {};  ///< of the columns; empty: a header, or numbers
   char decimal = '.';                   ///< in a text's numbers; ',' where they are written so, and never both
+  std::size_t skip = 0;                 ///< lines of a text that are not read, above its header
 };
 
 /// By the file's first bytes. Throws InvalidInput naming file and line, or what of the format is not as it must be.
 ForeignTable read_foreign_table(const std::filesystem::path& file, const TableLayout& layout);
 
 /// A text: '#' begins a comment, blank lines are skipped. The header is the first line if it has a word that is no number, or
-/// a comment just before the first row with as many words as there are columns.
+/// a comment just before the first row with as many words as there are columns. Of a line below the first kind that has words
+/// and no number each word is a unit: columns "p" over "kPa" or "[kPa]" are called "p[kPa]".
 ForeignTable table_of_text(std::string_view text, const std::string& name, const TableLayout& layout);
 
 }  // namespace grainlaw

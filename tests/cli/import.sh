@@ -49,6 +49,18 @@ jq '.series.decimal = "comma" | .tests[].series.file |= sub("theirs"; "commas")'
 "$grainlaw" import commas.json -o imported-commas >/dev/null || fail "decimal commas"
 for file in imported/*s1.csv; do cmp "$file" "imported-commas/$(basename "$file")" || fail "decimal commas differ"; done
 
+# As a laboratory's program writes them: lines about the sample above the header, and a line of units below it.
+mkdir lab
+for file in theirs/*.csv; do
+  awk -F ';' 'NR == 1 { print "Triaxial test;no. 7\nheight;100;mm"; next }
+      NR == 2 { titles = $0; gsub(/\[[^]]*\]/, "", titles); print titles
+        for (i = 1; i <= NF; ++i) printf "%s%s", match($i, /\[[^]]*\]/) ? substr($i, RSTART, RLENGTH) : "", i < NF ? ";" : "\n"; next } 1' \
+    "$file" >"lab/$(basename "$file")"
+done
+jq '.series.skip = 2 | .tests[].series.file |= sub("theirs"; "lab")' mapping.json >lab.json
+"$grainlaw" import lab.json -o imported-lab >/dev/null || fail "lines about the sample, and of units"
+for file in imported/*s1.csv; do cmp "$file" "imported-lab/$(basename "$file")" || fail "a line of units differs"; done
+
 # The same as .npz, where numpy is.
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
   mkdir npz

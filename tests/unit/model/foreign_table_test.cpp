@@ -58,6 +58,29 @@ TEST(ForeignText, HasDecimalCommasWhereThatIsSaid) {
   EXPECT_NE(text_refusal("a b\n1,5\n", commas).find("have decimal commas"), std::string::npos);
 }
 
+TEST(ForeignText, HasALineOfUnitsBelowItsHeader) {
+  const ForeignTable table = text("a;b;c;d [%]\n[kPa];;( mm ) ; \n1;2;3;4\nx;y;z;w\n");
+  expect_titles(table, {"a[kPa]", "b", "c[mm]", "d [%]"});
+  EXPECT_EQ(table.lines, (std::vector<std::size_t>{3, 4}));
+  for (const ForeignColumn& column : table.columns)
+    EXPECT_EQ(column.bad_row, 1u) << "a second line is no line of units";
+  expect_titles(text("a b\nkPa %\n1 2\n", {.names = {"x", "y"}}), {"x[kPa]", "y[%]"});
+  for (const std::string row : {"nan kPa", "1 kPa", "1,5 -2,5", "-,5 kPa"}) {
+    const ForeignTable rows = text("a b\n" + row + "\n1 2\n", {.delimiter = ' '});
+    expect_titles(rows, {"a", "b"});
+    EXPECT_EQ(rows.rows(), 2u) << row;
+  }
+  expect_titles(text("1 2\nkPa %\n", {.names = {"a", "b"}}), {"a", "b"});  // no header to stand below
+  EXPECT_NE(text_refusal("a b\nkPa\n1 2\n").find("line 2: 1 words where there are 2"), std::string::npos);
+}
+
+TEST(ForeignText, SkipsLinesAboveItsHeader) {
+  const ForeignTable table = text("Sample 7, height 100 mm\n\n1;2\na;b\n3;4\n", {.skip = 3});
+  expect_titles(table, {"a", "b"});
+  EXPECT_EQ(table.place(0), "t.txt: line 5");
+  EXPECT_NE(text_refusal("a b\n1 2\n", {.skip = 2}).find("has no rows"), std::string::npos);
+}
+
 TEST(ForeignText, KeepsWhatIsNoNumberByName) {
   const ForeignTable table = text("a,b\n1,\nnan,x\n");
   EXPECT_TRUE(std::isnan(table.columns[0].values[1]) && std::isnan(table.columns[1].values[0]));
@@ -70,7 +93,7 @@ TEST(ForeignText, RefusesWithTheLine) {
   EXPECT_EQ(
       text_refusal("a;b\n1,5;2;3\n"),
       "t.txt: line 2: 3 words where there are 2 columns; numbers have decimal points, and what is undefined is nan or "
-      "empty between delimiters");
+      "empty between delimiters; lines above the header are left out by skip");
   EXPECT_NE(text_refusal("a,a\n1,2\n").find("columns 1 and 2 are both called 'a'"), std::string::npos);
   EXPECT_NE(text_refusal("a b\n").find("has no rows"), std::string::npos);
   EXPECT_NE(text_refusal("").find("has no rows"), std::string::npos);
