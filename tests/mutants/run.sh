@@ -172,7 +172,8 @@ if [[ $mode == list ]]; then
 fi
 copy_sources
 for i in "${selected[@]}"; do replaced "$i" >/dev/null; done
-(cd "$tree" && cmake --preset release --log-level=WARNING -DGRAINLAW_LONG=OFF >&2)
+# not united: a fault costs the compilation of one file, or of those that include it
+(cd "$tree" && cmake --preset release --log-level=WARNING -DGRAINLAW_LONG=OFF -DGRAINLAW_UNITY=OFF >&2)
 libraries=()
 [[ $mode != check ]] || libraries=(grainlaw_model grainlaw_dem grainlaw_fit grainlaw_predict)
 compile "$work/logs/clean.build" "${libraries[@]}" || die "the sources do not build without a fault: see $work/logs/clean.build"
