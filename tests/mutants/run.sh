@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # tests/mutants/run.sh [--list | --check | --only IDS | --sample N]: do the tests notice faults in physics and law?
 # Sows each fault of tests/mutants/*.txt (--sample: N of them, evenly spaced; --only: those that match a pattern like
-# 'dem.lanes_*') into a copy of HEAD in build/mutants/ and runs the default suite but its checks of the sources up to its
-# first failure, the room's own tests first. Prints "mutant ID caught|survived|invalid by TEST" and at last
+# 'dem.lanes_*') into a copy of HEAD in build/mutants/ and runs the room's own tests up to their first failure; at last, for
+# those that lived, the default suite but its checks of the sources. Prints "mutant ID caught|survived|invalid by TEST" and
 # "mutants.caught N of M"; exit code 0 if none is invalid and 95 % are caught. Finished ones are kept in
 # build/mutants/results.txt and not run again for the same sources (the pages of figures aside, which
 # none of these tests reads), so that a stopped run goes on. --list: prints them, if all fit the sources; --check: do all compile?
@@ -130,17 +130,15 @@ run_suite() { # log
   first_failure=${first_failure:-ctest (ended with $status)}
 }
 
-judge() { # index; sets verdict and by
-  local room=${files[$1]%%/*} log=$work/logs/${ids[$1]} name precision
-  verdict=invalid by=-
+# Sets first_failure to the first failing test of a room's own; fails where they do not compile.
+run_own_tests() { # room log
+  local name precision
+  first_failure=
   while read -r name precision; do
-    compile "$log.build" "$name" || return 0
-    run_executable "$log.$name${precision:+.$precision}" "$name" "$precision"
-    if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; return 0; fi
-  done < <(tests_of "$room")
-  compile "$log.build" || return 0
-  run_suite "$log.suite"
-  if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; else verdict=survived by=-; fi
+    compile "$2.build" "$name" || return 1
+    run_executable "$2.$name${precision:+.$precision}" "$name" "$precision"
+    [[ -z $first_failure ]] || return 0
+  done < <(tests_of "$1")
 }
 
 key_of() { # index
@@ -153,12 +151,32 @@ known() { # key -> "ID VERDICT TEST"
   [[ -f $results ]] && sed -n "s/^$1 //p" "$results" | tail -n 1
 }
 
-# The suite must pass without a fault, else everything would seem to be caught.
-prove_clean() {
-  [[ -z $(known "$source_digest") ]] || return 0
-  run_suite "$work/logs/clean.suite"
-  [[ -z $first_failure ]] || die "the suite fails without any fault: $first_failure (see $work/logs/clean.suite)"
-  echo "$source_digest clean" >>"$results"
+# Tests must pass without a fault, else everything would seem to be caught: a room's own, or the suite.
+prove_clean() { # room | suite
+  local log=$work/logs/clean.$1
+  [[ -z $(known "$source_digest.$1") ]] || return 0
+  if [[ $1 == suite ]]; then
+    compile "$log.build" || die "the sources do not build without a fault: see $log.build"
+    run_suite "$log"
+  else
+    run_own_tests "$1" "$log" || die "the tests of $1 do not build without a fault: see $log.build"
+  fi
+  [[ -z $first_failure ]] || die "tests fail without any fault: $first_failure (see $log*)"
+  echo "$source_digest.$1 clean" >>"$results"
+}
+
+judge_by_own_tests() { # index; sets verdict and by
+  verdict=invalid by=-
+  run_own_tests "${files[$1]%%/*}" "$work/logs/${ids[$1]}" || return 0
+  if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; else verdict=lived; fi
+}
+
+judge_by_suite() { # index; sets verdict and by
+  local log=$work/logs/${ids[$1]}
+  verdict=invalid by=-
+  compile "$log.build" || return 0
+  run_suite "$log.suite"
+  if [[ -n $first_failure ]]; then verdict=caught by=$first_failure; else verdict=survived; fi
 }
 
 # -------------------------------------------------------------------------------------------------
@@ -174,12 +192,11 @@ copy_sources
 for i in "${selected[@]}"; do replaced "$i" >/dev/null; done
 # not united: a fault costs the compilation of one file, or of those that include it
 (cd "$tree" && cmake --preset release --log-level=WARNING -DGRAINLAW_LONG=OFF -DGRAINLAW_UNITY=OFF >&2)
-libraries=()
-[[ $mode != check ]] || libraries=(grainlaw_model grainlaw_dem grainlaw_fit grainlaw_predict)
-compile "$work/logs/clean.build" "${libraries[@]}" || die "the sources do not build without a fault: see $work/logs/clean.build"
 
 if [[ $mode == check ]]; then
   invalid=0
+  compile "$work/logs/clean.build" grainlaw_{model,dem,fit,predict,chain,app} ||
+    die "the sources do not build without a fault: see $work/logs/clean.build"
   for i in "${selected[@]}"; do
     sow "$i"
     compile "$work/logs/${ids[i]}.build" "grainlaw_${files[i]%%/*}" ||
@@ -191,22 +208,31 @@ if [[ $mode == check ]]; then
   exit
 fi
 
-prove_clean
+# First all by their own room's tests, which takes little; then those that lived by the suite.
 caught=0 invalid=0
-for i in "${selected[@]}"; do
-  key=$(key_of "$i")
-  read -r _ verdict by < <(known "$key" || true) || verdict=
-  if [[ -z ${verdict:-} ]]; then
-    sow "$i"
-    judge "$i"
-    restore "$i"
-    echo "$key ${ids[i]} $verdict $by" >>"$results"
-  fi
-  echo "mutant ${ids[i]} $verdict by $by"
+finish() { # index
+  echo "mutant ${ids[$1]} $verdict by $by"
   case $verdict in
     caught) caught=$((caught + 1)) ;;
     invalid) invalid=$((invalid + 1)) ;;
   esac
+}
+for judge in own_tests suite; do
+  lived=()
+  for i in "${selected[@]}"; do
+    key=$(key_of "$i")
+    read -r _ verdict by < <(known "$key" || true) || verdict=
+    if [[ -z ${verdict:-} || ($judge == suite && $verdict == lived) ]]; then
+      if [[ $judge == suite ]]; then prove_clean suite; else prove_clean "${files[i]%%/*}"; fi
+      sow "$i"
+      "judge_by_$judge" "$i"
+      restore "$i"
+      echo "$key ${ids[i]} $verdict $by" >>"$results"
+    fi
+    if [[ $verdict == lived ]]; then lived+=("$i"); else finish "$i"; fi
+  done
+  total=${total:-${#selected[@]}}
+  selected=("${lived[@]}")
 done
-echo "mutants.caught $caught of ${#selected[@]}"
-((invalid == 0 && 100 * caught >= 95 * ${#selected[@]}))
+echo "mutants.caught $caught of $total"
+((invalid == 0 && 100 * caught >= 95 * total))
