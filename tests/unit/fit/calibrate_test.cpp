@@ -57,6 +57,19 @@ TEST(Calibrate, AgreesWithItselfAboutEveryParameter) {
   EXPECT_NEAR(c.law.range.eps_dev_max, 0.30, 1e-9);
 }
 
+TEST(Calibrate, HoldsForDensitiesThatPathsEndAt) {
+  testing::SyntheticOptions few = noisy();
+  few.densities = {0.70, 0.75, 0.80};
+  few.sequences = false;
+  few.rows = 30;
+  testing::SyntheticDataset made(testing::synthetic_truth(), few);
+  std::vector<TestRecord> records = made.records();
+  records.push_back(made.test("up", 1, 0.80,
+                              {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.15),
+                               testing::synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.85)}));
+  EXPECT_NEAR(calibrate(records, {}, {}).law.range.nu_max, 0.85, 1e-9);
+}
+
 // a1 = (2/3)(a2 - mean over tests of a ratio): what a packing does to a1 beyond (2/3) of what it does to a2 is its deviation
 // from that mean. Packings with equally many tests deviate by zero in sum.
 TEST(Calibrate, TheTiedParameterVariesWithTheFreeOne) {

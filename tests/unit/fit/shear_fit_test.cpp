@@ -56,6 +56,35 @@ TEST(ShearFit, RecoversEqs17And18WithTheirMeasuredStart) {
   EXPECT_EQ(stage.tests.size(), 2u);
 }
 
+TEST(ShearFit, TakesComponentsAlongTheShear) {
+  TestRecord test = exact_shear(0.70, 0.1744, 54.4, 0.1335, 43.8, 0.3, -0.01);
+  for (Observation& row : test.rows) {
+    Eigen::Matrix3d across = Eigen::Matrix3d::Zero();
+    across(0, 1) = across(1, 0) = 0.1;
+    row.stress.tensor += row.P_star * test.packing.stress_unit() * across;
+    row.fabric.tensor += across;
+  }
+  Stage stage;
+  const ShearFit fit = fit_shear(test, 0.6649, {}, {}, stage);
+  EXPECT_NEAR(fit.s_max.value, 0.1744, 1e-10);
+  EXPECT_NEAR(fit.F_max.value, 0.1335, 1e-10);
+  EXPECT_NEAR(fit.s_0, -0.01, 1e-12);
+}
+
+TEST(ShearFit, ALineFromItsStartShowsNoSaturation) {
+  const double start = 0.2, misfit = 1e-12, rate = 5;
+  std::vector<double> eps_dev, line, curve;
+  for (int i = 1; i <= 30; ++i) {
+    eps_dev.push_back(0.01 * i);
+    line.push_back(start + 0.5 * eps_dev.back());
+    curve.push_back(start + 0.5 * (1 - std::exp(-rate * eps_dev.back())));
+  }
+  const std::vector<double> weight(eps_dev.size(), 1.0);
+  EXPECT_FALSE(shows_saturation(eps_dev, line, weight, start, rate, misfit));
+  EXPECT_TRUE(shows_saturation(eps_dev, curve, weight, start, rate, misfit));
+  EXPECT_FALSE(shows_saturation(eps_dev, curve, weight, start, 0.49 / eps_dev.back(), misfit)) << "too short";
+}
+
 TEST(ShearFit, LimitIsTheSteadyMeanWhereThereIsAPeak) {
   // Overshoot of 10 % up to eps_dev = .13, steady afterwards.
   TestRecord test = exact_shear(0.70, 0.17, 50, 0.13, 40, 0.3, 0, 0);
