@@ -1,5 +1,5 @@
-// What must not matter: a uniform velocity (Galilei), the order of the spheres' names, a restart from a copied state (same
-// bits), the skin of the list. The number of threads is in threads_test.cpp.
+// What must not matter: a uniform velocity (Galilei), the order of the spheres' names, the names of the axes, a restart from a
+// copied state (same bits), the skin of the list. The number of threads is in threads_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ State shaken_packing(const Material& material = {}) {
   return state;
 }
 
-Drive uniaxial(const State& state) {
-  const Eigen::Vector3d direction(0, 0, -1);
+Drive uniaxial(const State& state, int axis = 2) {
+  const Eigen::Vector3d direction = -Eigen::Vector3d::Unit(axis);
   DriveOptions options;
   options.strain_rate = 2e4;
   options.profile = Profile::constant;
@@ -113,6 +113,30 @@ TEST(Invariance, OrderOfTheSpheres) {
         std::max(worst, (scene::velocity(b.state().packing, i) - scene::velocity(a.state().packing, order[i])).norm());
   }
   EXPECT_LE(worst, 1e-9 * kSpeed);
+}
+
+TEST(Invariance, NamesOfTheAxes) {
+  const State given = shaken_packing();
+  for (const int turn : {1, 2}) {
+    const auto turned = [&](const Eigen::Vector3d& v) {
+      return Eigen::Vector3d(v[(3 - turn) % 3], v[(4 - turn) % 3], v[(5 - turn) % 3]);
+    };
+    State state = given;
+    for (std::size_t i = 0; i < given.packing.size(); ++i) {
+      scene::place(state.packing, i, turned(scene::fraction(given.packing, i)));
+      scene::launch(state.packing, i, turned(scene::velocity(given.packing, i)));
+    }
+    Simulation a = scene::start(given, 0.1), b = scene::start(state, 0.1);
+    advance_along(a, uniaxial(given, 2), 0, 100);
+    advance_along(b, uniaxial(state, (2 + turn) % 3), 0, 100);
+    double worst = 0;
+    for (std::size_t i = 0; i < given.packing.size(); ++i) {
+      const Eigen::Vector3d v = turned(scene::velocity(a.state().packing, i));
+      worst = std::max(worst, (scene::velocity(b.state().packing, i) - v).norm());
+    }
+    EXPECT_LE(worst, 1e-9 * kSpeed) << "x is called "
+                                    << "xyz"[turn];
+  }
 }
 
 TEST(Invariance, SkinOfTheList) {
