@@ -48,6 +48,16 @@ TEST(RandomGas, HasTheVolumeFractionNoMomentumAndACubicCell) {
   EXPECT_EQ(state.seed, 1u);
 }
 
+// Uniform on [-a, a] each: mean square a^2/3, its variance over n spheres (a^4/5 - a^4/9)/n.
+TEST(RandomGas, VelocitiesAreAlikeAlongAllAxes) {
+  const State state = gas(options_of(4000));
+  const double n = 4000;
+  Eigen::Array3d square = Eigen::Array3d::Zero();
+  for (std::size_t i = 0; i < state.packing.size(); ++i) square += scene::velocity(state.packing, i).array().square();
+  square /= square.mean();
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(square[k], 1, 5 * std::sqrt(4. / 5 / n)) << "xyz"[k];
+}
+
 TEST(RandomGas, SpheresDoNotOverlap) {
   const State state = gas(options_of(200));
   const ReferenceSums sums = reference_sums(state.packing, state.material, scene::at_rest(state));
