@@ -193,6 +193,38 @@ TEST(Memory, ShearFirstGoesWithTheElasticSlopeInAnyDirectionAfterAReversal) {
   EXPECT_NEAR(rate(p, y, nu, back).sigma.dot(kN), -DG, 1e-14);
 }
 
+TEST(Memory, ATurnTakesWhatLiesAlongTheShearAlone) {
+  const LawDirection back{0, 1, -kN};
+  LawState<double> y = coaxial(0.02, 0.16, 0.12, 0);
+  y.sigma += 0.02 * Deviator<double>(0.02, 0.05, -0.03, 0.01, 0.04);
+  y.s_r << 0.04, -0.03, 0.06, 0.01, -0.02;
+  const Deviator<double> before = y.s_r;
+  ASSERT_LT(reversal_value(y, back), -1e-3);
+  turn_corner(Rung::memory, y, back);
+  EXPECT_NEAR(reversal_value(y, back), 0, 1e-15);
+  const Deviator<double> moved = y.s_r - before;
+  EXPECT_LE((moved - moved.dot(kN) * kN).norm(), 1e-15);
+}
+
+// While s_r follows, the rate is that of the turned state and <s - s_r, N> = 0 stays: by central differences along the rate.
+TEST(Memory, WhereItFollowsNothingIsLeftToTurn) {
+  const LawParameters<double> p = parameters();
+  const double nu = 0.72, h = 1e-5;
+  const LawDirection direction{0.5, 1, kN};  // compression takes s down
+  LawState<double> y = coaxial(p.isotropic.P_star(nu), 0.16, 0.05, 0.2);
+  reverse(y, direction);
+  const LawState<double> following = following_rate(law_moduli(p, nu, Rung::memory), p, y, direction);
+  const auto value_at = [&](double e) {
+    LawState<double> there = y;
+    there.P += e * following.P;
+    there.sigma += e * following.sigma;
+    there.s_r += e * following.s_r;
+    return reversal_value(there, direction);
+  };
+  ASSERT_GT(following.s_r.norm(), 0.01) << "or it would not have to follow";
+  EXPECT_NEAR((value_at(h) - value_at(-h)) / (2 * h), 0, 1e-6 * following.s_r.norm());
+}
+
 TEST(Memory, StressRatioEndsOnItsLimitWhateverTheReversal) {
   // flow vanishes where s = s_b, |s_b| = s_max, s_b - s_r along N
   const LawParameters<double> p = parameters();
