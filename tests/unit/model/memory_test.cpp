@@ -256,6 +256,17 @@ TEST(Memory, NearTheLimitNothingStiffensAndFromBeyondItComesBack) {
   EXPECT_NEAR(rate(p, aside, nu, {0, 1, kN}).sigma.dot(M), -DG * 0.2 / kLeastDistance, 1e-12);
 }
 
+TEST(Memory, FlowIsContinuousWhereTheLimitComesNear) {
+  const double s_lim = 0.16, n = 3, h = 1e-9;
+  for (const double distance : {kLeastDistance, 0.0}) {  // Delta over s_lim, where the formula changes
+    const auto flow_at = [&](double Delta) {
+      const Deviator<double> s_r = (1 - Delta) * s_lim * kN;
+      return memory_flow<double>(s_r + 0.05 * s_lim * kN, s_r, kN, s_lim, n).dot(kN);
+    };
+    EXPECT_NEAR(flow_at(distance - h), flow_at(distance + h), 1e-6) << distance;
+  }
+}
+
 TEST(Memory, PressureGoesToItsShearedLevel) {
   // At s = s_max, F = F_max all terms but the relaxation vanish: dP = k (P_D2 - P) de.
   LawParameters<double> p = parameters();
