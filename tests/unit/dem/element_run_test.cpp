@@ -101,6 +101,29 @@ TEST(ElementTest, CornersAddStrainAndCountSegments) {
   }
 }
 
+// Where the rate jumps, so do the viscous forces: a run takes a corner as a run does that begins there.
+TEST(ElementTest, AfterACornerForcesAreThoseOfTheNewRate) {
+  const State start = relaxed_packing(60, 0.75);
+  const auto path = path_of(
+      start, {segment(Mode::D2, ExtentKind::eps_dev, 0.02), segment(Mode::D2, ExtentKind::eps_dev, 0.02, true)});
+  ElementTestOptions options = fast_options(2);
+  options.drive.profile = Profile::constant;
+  const auto first_step_of = [](int segment, std::vector<double>& v) {
+    return [&v, segment](Stepper& stepper, int index, double) {
+      if (index == segment && v.empty()) v = stepper.simulation().state().packing.vx;
+    };
+  };
+  std::vector<double> v, v_begun;
+  run_element_test(start, path, options, {}, first_step_of(1, v));
+  const State corner = run_element_test(start, {path[0]}, options, {}).end;
+  run_element_test(corner, {path[1]}, options, {}, first_step_of(0, v_begun));
+  ASSERT_EQ(v.size(), start.packing.vx.size());
+  ASSERT_EQ(v_begun.size(), v.size());
+  const double largest = std::abs(*std::ranges::max_element(v, {}, [](double x) { return std::abs(x); }));
+  ASSERT_GT(largest, 0);
+  for (std::size_t i = 0; i < v.size(); ++i) EXPECT_NEAR(v[i], v_begun[i], 1e-12 * largest) << i;
+}
+
 TEST(ElementTest, TheClockAndTheLedgerBeginAtZero) {
   State start = relaxed_packing(40, 0.75);
   start.time = 7;
