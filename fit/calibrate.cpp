@@ -166,6 +166,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   calibration.law.coupling = options.coupling;
   calibration.unused_tests = data.unused;
   calibration.warnings = outlier_warnings(data, options);
+  std::ranges::move(packing_warnings(data), std::back_inserter(calibration.warnings));
   fit_unloading_laws("ISO unloading", isotropic_series(data, options), calibration, options, control);
   fit_steady_laws(Mode::D2, data, calibration, options, control);
   fit_shear_laws(data, calibration, options, control);

@@ -20,6 +20,7 @@ constexpr double kMaterial = 5;    // times the scale; rattlers are counted, and
 constexpr double kNoScatter = 1e-9;  // relative, of series without any scatter
 constexpr std::size_t kFewest = 8;   // rows from which a scatter can be told
 constexpr std::size_t kNamed = 8;    // rows named in a warning
+constexpr double kApart = 0.04;      // of volume fraction: packings of one material jam within less
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -102,6 +103,27 @@ std::vector<std::size_t> outliers_of(const std::vector<double>& x, double least)
     if (z[i] > kStandsOut * usual && z[i] > least) found.push_back(i);
   }
   return found;
+}
+
+std::vector<std::string> packing_warnings(const DataSet& data) {
+  if (data.isotropic.empty()) return {};
+  double nu = 1;
+  for (const TestRecord* test : data.isotropic) nu = std::min(nu, test->rows.front().nu);
+  const auto at_nu = [nu](const TestRecord* test) -> const Observation& {
+    return *std::ranges::min_element(test->rows, {}, [nu](const Observation& row) { return std::abs(row.nu - nu); });
+  };
+  const auto by_P_star = [&](const TestRecord* a, const TestRecord* b) { return at_nu(a).P_star < at_nu(b).P_star; };
+  const auto [weak, strong] = std::ranges::minmax_element(data.isotropic, by_P_star);
+  const Observation& weakest = at_nu(*weak);
+  double denser = 0;  // to the farthest row in which the strongest still bears more
+  for (const Observation& row : (*strong)->rows) {
+    if (row.P_star > weakest.P_star) denser = std::max(denser, weakest.nu - row.nu);
+  }
+  if (!(denser > kApart && weakest.P_star > 0)) return {};
+  return {fmt::format(
+      "test {} has at nu = {:.3g} {:.3g} times the P* of {}, as if denser by {:.2g}: are mean_radius and stiffness of "
+      "both packings right?",
+      (*strong)->name, nu, at_nu(*strong).P_star / weakest.P_star, (*weak)->name, denser)};
 }
 
 std::vector<std::string> outlier_warnings(const DataSet& data, const CalibrationOptions& options) {

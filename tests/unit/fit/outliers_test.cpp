@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/synthetic_dataset.hpp"
+
 namespace grainlaw::fit {
 namespace {
 
@@ -51,6 +53,31 @@ TEST(Outliers, WhatIsTooSmallToMatterIsNot) {
   x[11] = 3.04;
   x[40] = 3.06;
   EXPECT_EQ(outliers_of(x, 0.05), Numbers{40});
+}
+
+/// ISO unloading of three packings, the P* of the second times `factor`.
+std::vector<std::string> warnings_where_one_differs(double factor) {
+  std::vector<TestRecord> tests = testing::synthetic_dataset(testing::synthetic_truth(), {{0.70}, {1, 2, 3}});
+  DataSet data;
+  for (TestRecord& test : tests) {
+    if (!is_isotropic_unloading(test)) continue;
+    if (test.packing.seed == 2) {
+      for (Observation& row : test.rows) row.P_star *= factor;
+    }
+    data.isotropic.push_back(&test);
+  }
+  return packing_warnings(data);
+}
+
+TEST(Outliers, APackingInOtherUnitsIsFound) {
+  EXPECT_TRUE(warnings_where_one_differs(1.1).empty()) << "packings differ";
+  for (const double factor : {2.0, 0.5, 10.0}) {
+    const std::vector<std::string> said = warnings_where_one_differs(factor);
+    ASSERT_EQ(said.size(), 1u) << factor;
+    EXPECT_NE(said[0].find("-s2"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find("mean_radius"), std::string::npos) << said[0];
+  }
+  EXPECT_TRUE(packing_warnings({}).empty());
 }
 
 TEST(Outliers, ShortSeriesAreNotJudged) {
