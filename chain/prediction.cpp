@@ -299,10 +299,11 @@ dem::Spec spec_of_calibration(const fs::path& spec, const fs::path& parameters) 
   return dem::read_spec(file);
 }
 
-FinishedRuns read_runs_of(const Path& path, const fs::path& folder) {
+FinishedRuns read_runs_of(const Path& path, const fs::path& folder, const fs::path& parameters) {
   const fs::path from = dataset_folder(folder);
   FinishedRuns runs{read_dataset(from), from};
   require_runs_of(path, runs.dataset, from.string());
+  if (const auto fitted = fitted_dataset(parameters)) require_unseen(runs.dataset, *fitted, from.string());
   return runs;
 }
 

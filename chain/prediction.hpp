@@ -53,8 +53,9 @@ PredictionInput prediction_input(const std::filesystem::path& parameters, PathFi
 dem::Spec spec_of_calibration(const std::filesystem::path& spec, const std::filesystem::path& parameters);
 
 /// The runs in the folder of a data set or of a prediction. Throws InvalidInput unless all follow `path` and none was
-/// fitted.
-FinishedRuns read_runs_of(const Path& path, const std::filesystem::path& folder);
+/// fitted, as far as their roles and the data set beside `parameters` say.
+FinishedRuns read_runs_of(const Path& path, const std::filesystem::path& folder,
+                          const std::filesystem::path& parameters);
 
 /// Curves of each rung, comparisons, the rung that the path needs. Writes the folder `output`: prediction.json, a CSV for
 /// each curve, with runs dem/ and comparison.json. Throws InvalidInput before anything is written for a path, a rung or a

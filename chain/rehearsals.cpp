@@ -65,6 +65,7 @@ std::vector<predict::RehearsalRuns> read_rehearsals(const fs::path& given, const
     }
     records.push_back(test.record);
   }
+  if (dataset != nullptr) require_unseen(runs, *dataset, folder.string());
   std::vector<predict::RehearsalRuns> paths = by_path(records, dataset);
   if (paths.size() == 1) paths.front().name = name;
   return paths;
@@ -107,8 +108,7 @@ void add_rehearsal(const fs::path& parameters, const fs::path& given, const std:
     throw InvalidInput(fmt::format("rehearsal '{}': letters, digits, '.', '-' and '_' make a name", name));
   ParametersFile file = read_parameters(parameters);
   const fs::path beside = parameters.has_parent_path() ? parameters.parent_path() : fs::path(".");
-  std::optional<Dataset> fitted;
-  if (fs::exists(beside / "dataset" / "dataset.json")) fitted = read_dataset(beside / "dataset");
+  const std::optional<Dataset> fitted = fitted_dataset(parameters);
   const auto paths = read_rehearsals(given, name, fitted ? &*fitted : nullptr);
   if (paths.size() != 1)
     throw InvalidInput(fmt::format("{}: holds runs of {} paths; a rehearsal is one", given.string(), paths.size()));

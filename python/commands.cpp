@@ -155,7 +155,7 @@ Predicted predict_path(const py::object& law, const py::object& path, const py::
     input.new_runs = {std::move(spec), seeds_of(runs.seeds), store.empty() ? parent : store};
   }
   auto content = result_of(wishes, [&](const Execution& execution) {
-    if (!against.empty()) input.finished_runs = chain::read_runs_of(input.path.path, against);
+    if (!against.empty()) input.finished_runs = chain::read_runs_of(input.path.path, against, read->file);
     return chain::predict_path(input, folder, execution);
   });
   return {std::make_shared<predict::PredictionFolder>(std::move(content)), folder};

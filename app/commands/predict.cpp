@@ -54,14 +54,14 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   if (options.dem) input.new_runs = new_runs(options);
   if (options.dry_run) return say_forecast(options.path.string(), chain::forecast(input, session), session);
   if (!options.against.empty()) {
-    input.finished_runs = chain::read_runs_of(input.path.path, options.against);
+    input.finished_runs = chain::read_runs_of(input.path.path, options.against, options.parameters);
     if (options.rehearse) keep_as_rehearsal(options, options.against, session, input);
   }
   predict::PredictionFolder prediction = chain::predict_path(input, options.output, session);
   if (options.rehearse && options.dem) {
     keep_as_rehearsal(options, options.output, session, input);
     input.new_runs.reset();
-    input.finished_runs = chain::read_runs_of(input.path.path, options.output);
+    input.finished_runs = chain::read_runs_of(input.path.path, options.output, options.parameters);
     prediction = chain::predict_path(input, options.output, session);
   }
   print_result(session.json ? json_text(summary_of(prediction, options.output)) : text_of(prediction, options.output));

@@ -7,6 +7,7 @@
 #include "dem/runs/dataset_runs.hpp"
 #include "dem/runs/feasibility.hpp"
 #include "fit/data/options.hpp"
+#include "model/files/path_json.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -34,14 +35,17 @@ std::vector<double> spread(double low, double high, int count) {
   return values;
 }
 
-void set_test(Json& test, const std::vector<double>& densities, double strain) {
-  const std::string mode = test.value("mode", "");
-  if (test["role"] != to_string(Role::calibration)) return;
-  if (mode == "D2" || mode == "D3") {
-    test["density"] = densities;
-    test["strain"] = strain;
+/// A calibration test as planned; not `path` itself, which the law is to be judged by.
+void set_test(dem::TestRequest& test, const std::vector<double>& densities, double strain, const Path& path,
+              const dem::Spec& frame) {
+  if (test.role != Role::calibration) return;
+  if (test.mode == "D2" || test.mode == "D3") {
+    test.densities = densities;
+    test.strain = strain;
   }
-  if (mode == "D2-ISO") test["density"] = spread(densities.front(), densities.back() - kExcursion, 3);
+  if (test.mode == "D2-ISO") test.densities = spread(densities.front(), densities.back() - kExcursion, 3);
+  std::erase_if(test.densities,
+                [&](double nu) { return path_to_json(dem::path_of(test, nu, frame)) == path_to_json(path); });
 }
 
 }  // namespace
@@ -65,15 +69,16 @@ std::vector<double> densities_for(const Path& path, int count, const dem::Prepar
 }
 
 dem::Spec planned_spec(const dem::Spec& frame, const PlanSettings& settings, const Path& path) {
-  dem::Spec rehearsing = frame;
-  dem::TestRequest& rehearsal = rehearsing.tests.emplace_back();
+  dem::Spec planned = frame;
+  const std::vector<double> densities = densities_for(path, settings.densities, frame.preparation);
+  for (dem::TestRequest& test : planned.tests) set_test(test, densities, settings.shear_strain, path, frame);
+  dem::TestRequest& rehearsal = planned.tests.emplace_back();
   rehearsal.name = kRehearsal;
   rehearsal.branch = path.branch;
   rehearsal.densities = {path.nu};
   rehearsal.segments = path.segments;
   rehearsal.role = Role::validation;
-  Json document = Json(dem::spec_to_json(rehearsing));
-  const std::vector<double> densities = densities_for(path, settings.densities, frame.preparation);
+  Json document = Json(dem::spec_to_json(planned));
   std::vector<std::uint64_t> seeds = frame.seeds;
   seeds.resize(std::min(seeds.size(), static_cast<std::size_t>(settings.packings)));
   for (std::uint64_t next = *std::max_element(frame.seeds.begin(), frame.seeds.end()) + 1;
@@ -84,7 +89,6 @@ dem::Spec planned_spec(const dem::Spec& frame, const PlanSettings& settings, con
   document["strain_rate"] = settings.strain_rate;
   document["time_step_fraction"] = settings.time_step_fraction;
   document["densities"] = densities;
-  for (Json& test : document["tests"]) set_test(test, densities, settings.shear_strain);
   return dem::spec_from_json(document, "the plan's SPEC");
 }
 

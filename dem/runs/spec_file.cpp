@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "dem/runs/feasibility.hpp"
@@ -74,9 +75,16 @@ std::vector<TestRequest> default_tests(const std::vector<double>& densities) {
   return tests;
 }
 
-/// Paths that can be followed, names that differ, runs that end.
+/// One run of a packing may be fitted once, and then judges nothing; descriptions are fits of their own.
+bool may_share_a_run(Role a, Role b) {
+  const bool fitted = a == Role::calibration || b == Role::calibration;
+  return !fitted || a == Role::description || b == Role::description;
+}
+
+/// Paths that can be followed, names that differ, runs that end and are not both fitted and judged.
 void check_tests(const Spec& spec, const std::string& name) {
   std::set<std::string> names;
+  std::multimap<std::string, std::size_t> tests_along;  // of each path
   for (std::size_t i = 0; i < spec.tests.size(); ++i) {
     const TestRequest& test = spec.tests[i];
     const std::vector<double> starts = test.mode == "ISO" ? std::vector<double>{0} : test.densities;
@@ -85,8 +93,19 @@ void check_tests(const Spec& spec, const std::string& name) {
         throw InvalidInput(fmt::format(
             "{}: tests[{}].name: '{}' is the name of an earlier test; give one of them another", name, i, test.name));
       }
+      const Path path = path_of(test, nu, spec);
+      const std::string key = path_to_json(path).dump();
+      for (auto [at, end] = tests_along.equal_range(key); at != end; ++at) {
+        const Role other = spec.tests[at->second].role;
+        if (may_share_a_run(test.role, other)) continue;
+        throw InvalidInput(fmt::format(
+            "{}: tests[{}]: '{}' ({}) is the run of tests[{}] ({}) on the same packings; what is fitted is "
+            "fitted once and judges nothing, remove one or give it another path",
+            name, i, record_name(test, nu, spec.seeds.front()), to_string(test.role), at->second, to_string(other)));
+      }
+      tests_along.emplace(key, i);
       if (test.mode == "ISO") continue;
-      check_path(path_of(test, nu, spec), spec.preparation, fmt::format("{}: tests[{}]: at nu = {}", name, i, nu));
+      check_path(path, spec.preparation, fmt::format("{}: tests[{}]: at nu = {}", name, i, nu));
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "model/files/digest.hpp"
@@ -97,6 +98,7 @@ Dataset read_dataset(const fs::path& folder) {
   } else {
     dataset.seeds = seeds_of(dataset);
   }
+  require_unseen(dataset, dataset, name);
   dataset.digest = digest_of(dataset);
   if (document.contains("digest") && document["digest"] != dataset.digest) {
     throw InvalidInput(fmt::format("{}: digest: does not match the tests, which give {}; remove the key to accept them",
@@ -158,6 +160,27 @@ Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) 
   }
   copy_durably(from / "dataset.json", to / "dataset.json");
   return read_dataset(to);
+}
+
+std::optional<Dataset> fitted_dataset(const fs::path& parameters) {
+  const fs::path beside = parameters.parent_path() / "dataset";
+  if (!fs::exists(beside / "dataset.json")) return std::nullopt;
+  return read_dataset(beside);
+}
+
+void require_unseen(const Dataset& runs, const Dataset& fitted, const std::string& name) {
+  for (const DatasetTest& test : runs.tests) {
+    const std::vector<Observation>& rows = test.record.rows;
+    if (test.record.role != Role::validation && test.record.role != Role::rehearsal) continue;
+    if (std::ranges::all_of(rows, [](const Observation& row) { return row.P_star == 0; })) continue;  // may well agree
+    for (const DatasetTest& other : fitted.tests) {
+      if (other.record.role != Role::calibration || other.sha256 != test.sha256) continue;
+      throw InvalidInput(
+          fmt::format("{}: test {} ({}) holds the series of test {}, which is fitted; what is fitted cannot judge the "
+                      "law, remove one",
+                      name, test.record.name, to_string(test.record.role), other.record.name));
+    }
+  }
 }
 
 void require_runs_of(const Path& path, const Dataset& dataset, const std::string& name) {

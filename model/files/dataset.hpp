@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,8 @@ struct Dataset {
   std::string digest;  ///< SHA-256 over names, roles, paths, packings and CSV digests
 };
 
-/// Reads and checks everything. Throws InvalidInput naming file, key or row; digests that are given must match.
+/// Reads and checks everything. Throws InvalidInput naming file, key or row; digests that are given must match, and no
+/// series may be both fitted and judged.
 Dataset read_dataset(const std::filesystem::path& folder);
 
 /// The records of one role.
@@ -61,6 +63,13 @@ std::filesystem::path dataset_folder(const std::filesystem::path& given);
 
 /// Copies the data set in `from`, as it was read, to `to`, unless they are the same; returns what is there.
 Dataset adopt(const Dataset& dataset, const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// The data set that the law in `parameters` was fitted to, if `calibrate` has left it beside that file.
+std::optional<Dataset> fitted_dataset(const std::filesystem::path& parameters);
+
+/// Throws InvalidInput naming the first test of `runs`, the data set of `name`, that is to judge the law (validation,
+/// rehearsal) although a test of role calibration in `fitted` holds the same series.
+void require_unseen(const Dataset& runs, const Dataset& fitted, const std::string& name);
 
 /// Throws InvalidInput naming the first test in the data set of `name` that does not follow `path`, or that was fitted.
 void require_runs_of(const Path& path, const Dataset& dataset, const std::string& name);

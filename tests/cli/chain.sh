@@ -80,6 +80,14 @@ sed 's/0.80/0.79/' path.json >other.json
 code=0
 "$grainlaw" predict out/parameters.json other.json -o bad --against out/predictions/uni 2>err || code=$?
 [[ $code == 2 ]] && grep -q 'follows another path' err && [[ ! -e bad ]] || fail "runs of another path were compared with"
+mkdir renamed
+jq '.tests |= map(select(.name == "D2-0.70-s2") | .name = "unseen" | .role = "validation") | del(.digest)' out/dataset/dataset.json >renamed/dataset.json
+cp out/dataset/D2-0.70-s2.csv renamed/unseen.csv
+jq '.tests[0].path | .segments |= map({mode, extent})' renamed/dataset.json >fitted.json
+code=0
+"$grainlaw" predict out/parameters.json fitted.json -o bad --against renamed 2>err || code=$?
+[[ $code == 2 ]] && grep -q 'test unseen (validation) holds the series of test D2-0.70-s2, which is fitted' err && [[ ! -e bad ]] ||
+  fail "a fitted run judged the law under another name: $(cat err)"
 
 # parameters without errors, as older calibrations left them
 jq 'del(.covariance, .scatter)' out/parameters.json >plain.json
@@ -105,6 +113,12 @@ awk -v a="$(width rehearsed/other/evolution-law.csv)" -v b="$(width other/evolut
 # refitted from the data set it is found again; a second path makes two, and each can be left out
 "$grainlaw" calibrate --dataset rehearsed -o refitted --quiet >/dev/null
 diff <(jq .rehearsals rehearsed/parameters.json) <(jq .rehearsals refitted/parameters.json) || fail "rehearsals got lost"
+cp -r rehearsed cheated
+cp -r renamed cheated/dataset/rehearsals/fitted
+code=0
+"$grainlaw" calibrate --dataset cheated -o bad --quiet 2>err || code=$?
+[[ $code == 2 ]] && grep -q 'fitted: test unseen (validation) holds the series of test D2-0.70-s2' err && [[ ! -e bad ]] ||
+  fail "a fitted run became a rehearsal: $(cat err)"
 "$grainlaw" predict refitted/parameters.json other.json -o refitted/predictions/other --dem --seeds 3 --spec out/spec.resolved.json --store out --rehearse >/dev/null 2>log ||
   fail "--dem --rehearse: $(cat log)"
 "$grainlaw" study bands refitted -o bands >text || fail "study bands"

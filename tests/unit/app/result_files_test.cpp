@@ -101,6 +101,29 @@ TEST_F(ResultFiles, DamagedDatasetIsRefused) {
   EXPECT_NE(message().find("tests[1].name: got \"../../x\""), std::string::npos) << message();
 }
 
+// What was fitted cannot judge the law, under whatever name.
+TEST_F(ResultFiles, ASeriesIsNotBothFittedAndJudged) {
+  Dataset dataset = small_dataset(folder_);
+  DatasetTest again = dataset.tests[1];
+  ASSERT_EQ(again.record.role, Role::calibration);
+  again.record.name = "again";
+  write_series(folder_ / "again.csv", again.record.rows);
+  dataset.tests.push_back(again);
+  for (const Role role : {Role::validation, Role::rehearsal, Role::description}) {
+    dataset.tests.back().record.role = role;
+    write_dataset_index(folder_, dataset);
+    const std::string said = refusal([&] { read_dataset(folder_); });
+    if (role == Role::description) {
+      EXPECT_EQ(said, "accepted") << "by laws of its own";
+    } else {
+      EXPECT_NE(said.find(fmt::format("test again ({}) holds the series of test {}, which is fitted", to_string(role),
+                                      dataset.tests[1].record.name)),
+                std::string::npos)
+          << said;
+    }
+  }
+}
+
 /// A locale whose numbers look like "1.234,5".
 // Hard case F12.
 TEST_F(ResultFiles, F12DoNotDependOnTheLocale) {

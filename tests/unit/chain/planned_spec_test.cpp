@@ -62,6 +62,13 @@ TEST(PlannedSpec, RehearsesThePath) {
   EXPECT_EQ(last.preparation.keep_unloading, tests.front().preparation.keep_unloading);  // from the same packings
 }
 
+TEST(PlannedSpec, DoesNotFitThePath) {
+  const Path shear{0.81, Branch::unloading, {{Mode::D2, direction_of(Mode::D2), ExtentKind::eps_dev, 0.21}}};
+  const dem::Spec spec = planned_spec(frame(), {500, 2, 276, 0.05, 4, 0.21}, shear);
+  EXPECT_EQ(spec.tests[1].densities, (std::vector<double>{0.73, 0.757, 0.783}));
+  EXPECT_EQ(planned_spec(frame(), {500, 2, 276, 0.05, 4, 0.3}, shear).tests[1].densities.size(), 4u) << "goes on";
+}
+
 TEST(PlannedSpec, TheGridHoldsThePilotAndTheWantedRate) {
   const PlanSettings pilot = pilot_settings(frame());
   EXPECT_EQ(pilot.strain_rate, 138 * 8);

@@ -1,6 +1,9 @@
 #include "dem/runs/spec_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <utility>
 
 #include "dem/runs/feasibility.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -153,10 +156,26 @@ TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
           R"({"tests": [{"segments": [{"rate_tensor": [[1,0.5,0],[0.5,-1,0],[0,0,0]], "extent": {"eps_dev": 1}}], "density": 0.7, "role": "calibration"}]})")
           .find("s.json: tests[0]"),
       std::string::npos);  // the engine deforms along the axes only
-  EXPECT_EQ(
-      spec_refusal(
-          R"({"tests": [{"mode": "D2", "density": 0.7, "role": "calibration"}, {"name": "again", "mode": "D2", "density": 0.7, "role": "validation"}]})"),
-      "accepted");
+}
+
+// What was fitted cannot judge the law: the same path from the same density is the same run.
+TEST(SpecFile, RefusesToFitAndToJudgeByOneRun) {
+  const auto said = [](const char* first, const char* second, const char* nu) {
+    return spec_refusal(fmt::format(
+        R"({{"tests": [{{"mode": "D2", "density": [0.7, 0.75], "role": "{}"}}, {{"name": "again", "mode": "D2", "density": {}, "role": "{}"}}]}})",
+        first, nu, second));
+  };
+  EXPECT_EQ(said("calibration", "validation", "0.75"),
+            "s.json: tests[1]: 'again-0.75-s1' (validation) is the run of tests[0] (calibration) on the same packings; "
+            "what is fitted is fitted once and judges nothing, remove one or give it another path");
+  for (const auto& [first, second] : {std::pair{"calibration", "rehearsal"},
+                                      {"rehearsal", "calibration"},
+                                      {"validation", "calibration"},
+                                      {"calibration", "calibration"}})
+    EXPECT_TRUE(said(first, second, "0.7").starts_with("s.json: tests[1]: 'again-0.70-s1'")) << first << ' ' << second;
+  EXPECT_EQ(said("calibration", "validation", "0.72"), "accepted");
+  EXPECT_EQ(said("calibration", "description", "0.7"), "accepted") << "by laws of its own";
+  EXPECT_EQ(said("validation", "rehearsal", "0.7"), "accepted") << "neither is fitted";
 }
 
 TEST(SpecFile, StepsOfAPreparationFollowFromRatesAndTheShortestCollision) {
