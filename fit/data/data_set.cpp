@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "model/files/fields_json.hpp"
 #include "model/vocabulary/error.hpp"
 #include "model/vocabulary/series_check.hpp"
 
@@ -38,6 +39,20 @@ void check_test(const TestRecord& test, Role role) {
     }
   }
   check_series(test.rows, test.path, test.packing, "test " + test.name);
+}
+
+/// Refuses what is not of the material of `first`; a width of 0 is unknown.
+void check_material(const TestRecord& test, const TestRecord& first) {
+  const auto differs = [&](const auto& what, const auto& ours, const auto& theirs) {
+    refuse(test,
+           fmt::format("its packing has {} {}, that of test {} {}; a law is of one material, calibrate them apart",
+                       what, ours, first.name, theirs));
+  };
+  const PackingInfo &ours = test.packing, &theirs = first.packing;
+  if (ours.size_width > 0 && theirs.size_width > 0 && ours.size_width != theirs.size_width)
+    differs("size_width", ours.size_width, theirs.size_width);
+  if (ours.contacts == theirs.contacts) return;
+  differs("contacts", fields_to_json(ours.contacts).dump(), fields_to_json(theirs.contacts).dump());
 }
 
 bool same_series(const TestRecord& a, const TestRecord& b) {
@@ -99,6 +114,7 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const TestRecord& test = tests[i];
     check_test(test, role);
+    check_material(test, tests.front());
     if (!names.insert(test.name).second) refuse(test, "this name is given twice; rename one of the tests");
     for (std::size_t j = 0; j < i; ++j) {
       if (same_series(test, tests[j])) {

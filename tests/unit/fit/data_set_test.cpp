@@ -145,6 +145,20 @@ TEST(DataSet, NoticesATestGivenTwice) {
   expect_refusal(tests, {"another", tests[0].name, "same series"});
 }
 
+TEST(DataSet, RefusesASecondMaterial) {
+  const std::vector<TestRecord> tests = small_set();
+  std::vector<TestRecord> changed = tests;
+  changed[1].packing.contacts.friction = 0.5;
+  expect_refusal(changed, {"test " + changed[1].name, "contacts", "\"friction\":0.5", tests[0].name, "one material"});
+  for (TestRecord& test : changed) test.packing.contacts.friction = 0.5;
+  EXPECT_EQ(refusal_of_tests(changed), "accepted") << "friction is in the data";
+  changed = tests;
+  changed[2].packing.size_width = 2 * tests[0].packing.size_width;
+  expect_refusal(changed, {"test " + changed[2].name, "size_width", tests[0].name});
+  changed[2].packing.size_width = 0;
+  EXPECT_EQ(refusal_of_tests(changed), "accepted") << "unknown";
+}
+
 TEST(DataSet, RefusesEmptyAndMisshapenTests) {
   std::vector<TestRecord> tests = small_set();
   tests[1].rows.clear();
