@@ -6,10 +6,12 @@ grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
 
 "$grainlaw" init dataset >/dev/null
-"$grainlaw" calibrate --dataset dataset -o out --quiet >/dev/null
 jq '.tests[] | select(.name == "D2-0.71-s1").path' dataset/dataset.json >path.json
-cp -r dataset runs # for the layout alone: the fit has seen them
-jq '.tests |= [.[] | select(.name | startswith("D2-0.71")) | .role = "validation"]' dataset/dataset.json >runs/dataset.json
+cp -r dataset runs
+jq '.tests |= [.[] | select(.name | startswith("D2-0.71")) | .role = "validation"]' runs/dataset.json >dataset.json
+jq '.tests |= map(select(.name | startswith("D2-0.71") | not))' runs/dataset.json >dataset/dataset.json
+mv dataset.json runs
+"$grainlaw" calibrate --dataset dataset -o out --quiet >/dev/null
 for name in compared lone; do
   if [[ $name == compared ]]; then against=(--against runs); else against=(); fi
   "$grainlaw" predict out/parameters.json path.json "${against[@]}" --model reduced -o "out/predictions/$name" --quiet >/dev/null
