@@ -8,7 +8,6 @@
 #include <map>
 #include <set>
 
-#include "model/files/fields_json.hpp"
 #include "model/vocabulary/error.hpp"
 #include "model/vocabulary/series_check.hpp"
 
@@ -43,16 +42,18 @@ void check_test(const TestRecord& test, Role role) {
 
 /// Refuses what is not of the material of `first`; a width of 0 is unknown.
 void check_material(const TestRecord& test, const TestRecord& first) {
-  const auto differs = [&](const auto& what, const auto& ours, const auto& theirs) {
-    refuse(test,
-           fmt::format("its packing has {} {}, that of test {} {}; a law is of one material, calibrate them apart",
-                       what, ours, first.name, theirs));
+  const auto differs = [&](const char* what, const std::string& ours, const std::string& theirs) {
+    refuse(test, fmt::format("{} of its packing: {}, but {} in test {}; a law is of one material, calibrate them apart",
+                             what, ours, theirs, first.name));
+  };
+  const auto text = [](const ContactModel& contacts) {
+    return fmt::format("{}, friction {}, rolling friction {}, cohesion {} J/m^2", to_string(contacts.normal_force),
+                       contacts.friction, contacts.rolling_friction, contacts.cohesion);
   };
   const PackingInfo &ours = test.packing, &theirs = first.packing;
   if (ours.size_width > 0 && theirs.size_width > 0 && ours.size_width != theirs.size_width)
-    differs("size_width", ours.size_width, theirs.size_width);
-  if (ours.contacts == theirs.contacts) return;
-  differs("contacts", fields_to_json(ours.contacts).dump(), fields_to_json(theirs.contacts).dump());
+    differs("size_width", fmt::to_string(ours.size_width), fmt::to_string(theirs.size_width));
+  if (ours.contacts != theirs.contacts) differs("contacts", text(ours.contacts), text(theirs.contacts));
 }
 
 bool same_series(const TestRecord& a, const TestRecord& b) {

@@ -149,7 +149,8 @@ TEST(DataSet, RefusesASecondMaterial) {
   const std::vector<TestRecord> tests = small_set();
   std::vector<TestRecord> changed = tests;
   changed[1].packing.contacts.friction = 0.5;
-  expect_refusal(changed, {"test " + changed[1].name, "contacts", "\"friction\":0.5", tests[0].name, "one material"});
+  expect_refusal(changed,
+                 {"test " + changed[1].name, "contacts", "hooke, friction 0.5, ", tests[0].name, "one material"});
   for (TestRecord& test : changed) test.packing.contacts.friction = 0.5;
   EXPECT_EQ(refusal_of_tests(changed), "accepted") << "friction is in the data";
   changed = tests;
