@@ -27,7 +27,7 @@ TEST(Rehearsals, AreByPathAndKnowWhetherTheirPackingsWereFitted) {
   const std::vector<predict::RehearsalRuns> paths = rehearsals_of(dataset, "no such folder");
   ASSERT_EQ(paths.size(), 3u);
   for (const auto& [k, name, runs, fitted] :
-       {std::tuple{0, "UNI-0.7", 2, false}, {1, "D3-0.7", 2, true}, {2, "ISO-0.7", 1, false}}) {
+       {std::tuple{std::size_t{0}, "UNI-0.7", 2, false}, {1, "D3-0.7", 2, true}, {2, "ISO-0.7", 1, false}}) {
     EXPECT_EQ(paths[k].name, name);
     EXPECT_EQ(paths[k].runs.size(), runs) << name;
     EXPECT_EQ(paths[k].fitted_packings, fitted) << name;
