@@ -35,15 +35,18 @@ std::vector<double> spread(double low, double high, int count) {
   return values;
 }
 
-/// A calibration test as planned; not `path` itself, which the law is to be judged by.
+/// A calibration test as planned; of what is planned not `path` itself, which the law is to be judged by.
 void set_test(dem::TestRequest& test, const std::vector<double>& densities, double strain, const Path& path,
               const dem::Spec& frame) {
   if (test.role != Role::calibration) return;
   if (test.mode == "D2" || test.mode == "D3") {
     test.densities = densities;
     test.strain = strain;
+  } else if (test.mode == "D2-ISO") {
+    test.densities = spread(densities.front(), densities.back() - kExcursion, 3);
+  } else {
+    return;  // as the frame says
   }
-  if (test.mode == "D2-ISO") test.densities = spread(densities.front(), densities.back() - kExcursion, 3);
   std::erase_if(test.densities,
                 [&](double nu) { return path_to_json(dem::path_of(test, nu, frame)) == path_to_json(path); });
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "dem/runs/dataset_runs.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -67,6 +68,13 @@ TEST(PlannedSpec, DoesNotFitThePath) {
   const dem::Spec spec = planned_spec(frame(), {500, 2, 276, 0.05, 4, 0.21}, shear);
   EXPECT_EQ(spec.tests[1].densities, (std::vector<double>{0.73, 0.757, 0.783}));
   EXPECT_EQ(planned_spec(frame(), {500, 2, 276, 0.05, 4, 0.3}, shear).tests[1].densities.size(), 4u) << "goes on";
+  dem::Spec fitting = frame();  // the frame's own test at its only density
+  fitting.tests[3].role = Role::calibration;
+  const Path uniaxial = dem::path_of(fitting.tests[3], 0.7, fitting);
+  EXPECT_NE(testing::refusal([&] {
+              planned_spec(fitting, {500, 2, 276, 0.05, 4, 0.21}, uniaxial);
+            }).find("'rehearsal-0.70-s7' (validation) is the run of tests[3] (calibration)"),
+            std::string::npos);
 }
 
 TEST(PlannedSpec, TheGridHoldsThePilotAndTheWantedRate) {
