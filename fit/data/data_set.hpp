@@ -20,8 +20,8 @@ struct DataSet {
 
 /// Points into `tests`, all of `role`. Throws InvalidInput naming test, row and column, with the remedy, for: another role, no
 /// rows, a name given twice, one series under two names, one row in tests of two seeds, a packing without size or
-/// stiffness, packings of two materials; rows that contradict themselves or the path; for a calibration: no ISO unloading or no shear
-/// at constant volume.
+/// stiffness, packings of two materials; rows that contradict themselves or the path; for a calibration: no ISO
+/// unloading or no shear at constant volume.
 DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role = Role::calibration);
 
 /// Whether any row tells the fabric; whether any tells C* and the fraction of rattlers. What needs them leaves the others out.
