@@ -20,7 +20,7 @@ constexpr double kMaterial = 5;    // times the scale; rattlers are counted, and
 constexpr double kNoScatter = 1e-9;  // relative, of series without any scatter
 constexpr std::size_t kFewest = 8;   // rows from which a scatter can be told
 constexpr std::size_t kNamed = 8;    // rows named in a warning
-constexpr double kApart = 0.04;      // of volume fraction, a choice: packings may jam at other densities, but not so far apart
+constexpr double kApart = 0.04;      // of volume fraction, a choice
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
