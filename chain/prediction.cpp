@@ -303,7 +303,8 @@ FinishedRuns read_runs_of(const Path& path, const fs::path& folder, const fs::pa
   const fs::path from = dataset_folder(folder);
   FinishedRuns runs{read_dataset(from), from};
   require_runs_of(path, runs.dataset, from.string());
-  if (const auto fitted = fitted_dataset(parameters)) require_unseen(runs.dataset, *fitted, from.string());
+  const auto fitted = fitted_dataset(parameters, read_parameters(parameters).law.dataset_digest);
+  if (fitted) require_unseen(runs.dataset, *fitted, from.string());
   return runs;
 }
 

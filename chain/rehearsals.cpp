@@ -108,7 +108,7 @@ void add_rehearsal(const fs::path& parameters, const fs::path& given, const std:
     throw InvalidInput(fmt::format("rehearsal '{}': letters, digits, '.', '-' and '_' make a name", name));
   ParametersFile file = read_parameters(parameters);
   const fs::path beside = parameters.has_parent_path() ? parameters.parent_path() : fs::path(".");
-  const std::optional<Dataset> fitted = fitted_dataset(parameters);
+  const std::optional<Dataset> fitted = fitted_dataset(parameters, file.law.dataset_digest);
   const auto paths = read_rehearsals(given, name, fitted ? &*fitted : nullptr);
   if (paths.size() != 1)
     throw InvalidInput(fmt::format("{}: holds runs of {} paths; a rehearsal is one", given.string(), paths.size()));

@@ -162,10 +162,12 @@ Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) 
   return read_dataset(to);
 }
 
-std::optional<Dataset> fitted_dataset(const fs::path& parameters) {
+std::optional<Dataset> fitted_dataset(const fs::path& parameters, const std::string& digest) {
   const fs::path beside = parameters.parent_path() / "dataset";
   if (!fs::exists(beside / "dataset.json")) return std::nullopt;
-  return read_dataset(beside);
+  Dataset dataset = read_dataset(beside);
+  if (!digest.empty() && dataset.digest != digest) return std::nullopt;
+  return dataset;
 }
 
 void require_unseen(const Dataset& runs, const Dataset& fitted, const std::string& name) {

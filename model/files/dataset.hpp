@@ -64,8 +64,9 @@ std::filesystem::path dataset_folder(const std::filesystem::path& given);
 /// Copies the data set in `from`, as it was read, to `to`, unless they are the same; returns what is there.
 Dataset adopt(const Dataset& dataset, const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// The data set that the law in `parameters` was fitted to, if `calibrate` has left it beside that file.
-std::optional<Dataset> fitted_dataset(const std::filesystem::path& parameters);
+/// The data set of `digest`, to which the law in `parameters` was fitted, if it is beside that file as `calibrate` has left
+/// it; where a law does not say which it was (an empty digest), the one that is there.
+std::optional<Dataset> fitted_dataset(const std::filesystem::path& parameters, const std::string& digest);
 
 /// Throws InvalidInput naming the first test of `runs`, the data set of `name`, that is to judge the law (validation,
 /// rehearsal) although a test of role calibration in `fitted` holds the same series.

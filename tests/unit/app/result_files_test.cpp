@@ -124,6 +124,16 @@ TEST_F(ResultFiles, ASeriesIsNotBothFittedAndJudged) {
   }
 }
 
+TEST_F(ResultFiles, ADataSetBesideALawIsTheFittedOneByItsDigest) {
+  const Dataset dataset = small_dataset(make_subfolder(folder_, "dataset"));
+  const fs::path parameters = folder_ / "parameters.json";
+  EXPECT_TRUE(fitted_dataset(parameters, dataset.digest));
+  EXPECT_TRUE(fitted_dataset(parameters, "")) << "of a law that does not know";
+  EXPECT_FALSE(fitted_dataset(parameters, std::string(64, 'b'))) << "a law that was moved beside another data set";
+  fs::remove_all(folder_ / "dataset");
+  EXPECT_FALSE(fitted_dataset(parameters, dataset.digest));
+}
+
 /// A locale whose numbers look like "1.234,5".
 // Hard case F12.
 TEST_F(ResultFiles, F12DoNotDependOnTheLocale) {
