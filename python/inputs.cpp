@@ -81,9 +81,9 @@ Json value_from(py::handle object, const std::string& name, int depth) {
 std::filesystem::path file_of(py::handle object, const std::string& name) {
   PyObject* bytes = nullptr;
   if (PyUnicode_FSConverter(object.ptr(), &bytes) == 0) {
-    const py::error_already_set error;
-    if (!error.matches(PyExc_TypeError))
-      refuse(name, one_line(std::string(py::str(error.value())), 200) + " in the path of a file");
+    const py::error_already_set raised;
+    if (!raised.matches(PyExc_TypeError))
+      refuse(name, one_line(std::string(py::str(raised.value())), 200) + " in the path of a file");
     refuse(name, fmt::format("is of type {}; give the path of a file as str, bytes or os.PathLike", type_of(object)));
   }
   const std::string path = py::reinterpret_steal<py::bytes>(bytes);

@@ -9,8 +9,6 @@
 namespace grainlaw::app::report {
 namespace {
 
-constexpr double kLargest = 1e300;  // so that the range's extent is finite
-
 /// The step 1, 2 or 5 times a power of ten that divides `extent` into about
 /// `wanted` parts.
 double round_step(double extent, int wanted) {
@@ -76,8 +74,8 @@ bool Axis::defined_at(double value) const { return std::isfinite(value) && (!log
 
 Axis linear_axis(double lowest, double highest, int wanted, bool exact) {
   Axis axis;
-  lowest = std::clamp(lowest, -kLargest, kLargest);
-  highest = std::clamp(highest, -kLargest, kLargest);
+  lowest = std::clamp(lowest, -kLargestDrawn, kLargestDrawn);
+  highest = std::clamp(highest, -kLargestDrawn, kLargestDrawn);
   if (!(highest - lowest > 1e-12 * std::max(std::abs(lowest), std::abs(highest)))) {
     const double half = lowest == 0 ? 1 : 0.1 * std::abs(lowest);
     highest = lowest + half;

@@ -9,6 +9,8 @@
 
 namespace grainlaw::app::report {
 
+inline constexpr double kLargestDrawn = 1e300;  ///< values are drawn at most there, so that their extent is finite
+
 struct Tick {
   double value = 0;
   Text label;  ///< empty on minor ticks

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "app/report/axis.hpp"
 #include "app/report/svg_figure.hpp"
 
 namespace grainlaw::app::report {
@@ -144,10 +145,9 @@ char base64_character(unsigned six_bits) {
 }
 
 std::string packed_numbers(const std::vector<double>& values, bool logarithmic) {
-  constexpr double kLargest = 1e300;  // so that the extent is finite
   const auto number = [=](double value) {
     if (!std::isfinite(value) || (logarithmic && value <= 0)) return std::numeric_limits<double>::quiet_NaN();
-    return logarithmic ? std::log(value) : std::clamp(value, -kLargest, kLargest);
+    return logarithmic ? std::log(value) : std::clamp(value, -kLargestDrawn, kLargestDrawn);
   };
   double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
   for (const double value : values) {
