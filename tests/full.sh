@@ -8,7 +8,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # Each stage and its minutes on two cores, compiler cache empty, where no run has said it here.
-stages=(release 17  long 25  clang 30  assertions 35  asan-ubsan 60  tsan 110  valgrind 60  fuzz 32
+stages=(release 17  long 25  clang 30  sources 20  assertions 35  asan-ubsan 60  tsan 110  valgrind 60  fuzz 32
         pipeline 20  engine 15  ground 60  truth 15  trust 330  own_data 15  page 30  cluster 30  house 25  calibration 55
         law 150)
 folder=build/full
@@ -26,13 +26,14 @@ build() { # preset option...
 
 run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
   case $1 in
-    clang | fuzz) command -v clang++-14 || return 77 ;;
+    clang | sources | fuzz) command -v clang++-14 || return 77 ;;
     valgrind) command -v valgrind || return 77 ;;
   esac
   case $1 in
     release) build release "${options[@]}"; ctest --preset release --parallel $((jobs + 1)) ;;
     long) build release "${options[@]}"; ctest --test-dir build/release -L '^long$' --output-on-failure --parallel "$jobs" ;;
     clang | assertions | asan-ubsan | tsan) build "$1"; ctest --preset "$1" --parallel "$jobs" ;;
+    sources) build sources ;;
     valgrind) build assertions; tests/valgrind.sh ;;
     fuzz) build release "${options[@]}"; tests/fuzz/run.sh --seconds 60 --grainlaw build/release/bin/grainlaw ;;
     *) bash "tests/acceptance/$1.sh" ;;
