@@ -44,8 +44,8 @@ char delimiter_of(std::string_view line, char decimal) {
   return ' ';
 }
 
-/// A number, NaN for an empty word; nothing for what is neither.
-std::optional<double> number_or_nan(std::string_view word, char decimal_sign) {
+/// A number, NaN for an empty word (a gap); nothing for what is neither.
+std::optional<double> number_or_gap(std::string_view word, char decimal_sign) {
   if (word.empty()) return std::numeric_limits<double>::quiet_NaN();
   if (decimal_sign == '.') return decimal(word);
   if (word.find('.') != std::string_view::npos) return std::nullopt;  // of thousands, or this table has decimal points
@@ -106,7 +106,7 @@ class TextTable {
   /// The columns by the first line; true when it is their header.
   bool begin(const std::vector<std::string_view>& words) {
     bool header = false;
-    for (const std::string_view word : words) header = header || !number_or_nan(word, decimal_);
+    for (const std::string_view word : words) header = header || !number_or_gap(word, decimal_);
     std::vector<std::string_view> titles;
     if (header)
       titles = words;
@@ -126,7 +126,7 @@ class TextTable {
       if (word.empty()) continue;
       const auto digit = word.find_first_of("0123456789");
       const bool begins_as_number = digit != std::string_view::npos && word.find_first_not_of("+-.,") == digit;
-      if (begins_as_number || number_or_nan(word, decimal_)) return false;  // 1,5 is a number of others
+      if (begins_as_number || number_or_gap(word, decimal_)) return false;  // 1,5 is a number of others
       any = true;
     }
     if (!any || words.size() != table_.columns.size()) return false;
@@ -146,7 +146,7 @@ class TextTable {
     if (table_.rows() == kMaxCsvRows) refuse(fmt::format("more than {} rows; thin the series", kMaxCsvRows));
     for (std::size_t i = 0; i < words.size(); ++i) {
       ForeignColumn& column = table_.columns[i];
-      const std::optional<double> value = number_or_nan(words[i], decimal_);
+      const std::optional<double> value = number_or_gap(words[i], decimal_);
       if (!value && column.bad.empty()) {
         column.bad_row = column.values.size();
         column.bad = one_line(words[i], 40);
