@@ -1,5 +1,7 @@
 // grainlaw study prior DIR [DIR...]: what many packings say of the errors of few.
 
+#include <fmt/format.h>
+
 #include "app/commands/commands.hpp"
 #include "app/terminal/session.hpp"
 #include "chain/studies/prior_study.hpp"
