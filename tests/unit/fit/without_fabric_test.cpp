@@ -1,4 +1,6 @@
 // What is left of a calibration where nobody measured the fabric, counted contacts, or both.
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 #include "fit/calibrate.hpp"
