@@ -5,6 +5,7 @@
 
 #include "model/files/dataset.hpp"
 #include "model/files/digest.hpp"
+#include "model/files/output.hpp"
 #include "model/files/series_csv.hpp"
 #include "model/parameters_file.hpp"
 #include "predict/prediction_files.hpp"
@@ -126,11 +127,11 @@ TEST_F(ResultFiles, ASeriesIsNotBothFittedAndJudged) {
 
 TEST_F(ResultFiles, ADataSetBesideALawIsTheFittedOneByItsDigest) {
   const Dataset dataset = small_dataset(make_subfolder(folder_, "dataset"));
-  const fs::path parameters = folder_ / "parameters.json";
+  const std::filesystem::path parameters = folder_ / "parameters.json";
   EXPECT_TRUE(fitted_dataset(parameters, dataset.digest));
   EXPECT_TRUE(fitted_dataset(parameters, "")) << "of a law that does not know";
   EXPECT_FALSE(fitted_dataset(parameters, std::string(64, 'b'))) << "a law that was moved beside another data set";
-  fs::remove_all(folder_ / "dataset");
+  std::filesystem::remove_all(folder_ / "dataset");
   EXPECT_FALSE(fitted_dataset(parameters, dataset.digest));
 }
 
