@@ -30,7 +30,7 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
     valgrind) command -v valgrind || return 77 ;;
   esac
   case $1 in
-    release) build release "${options[@]}"; ctest --preset release --parallel $((jobs + 1)) ;;
+    release) build release "${options[@]}"; ctest --preset release --parallel $((3 * jobs)) ;;
     long) build release "${options[@]}"; ctest --test-dir build/release -L '^long$' --output-on-failure --parallel "$jobs" ;;
     clang | assertions | asan-ubsan | tsan) build "$1"; ctest --preset "$1" --parallel "$jobs" ;;
     sources) build sources ;;

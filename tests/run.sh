@@ -20,5 +20,5 @@ fi
 ./install-packages.sh
 cmake --preset release --log-level=WARNING -DGRAINLAW_LONG=OFF "${options[@]}"
 cmake --build build/release --parallel "$jobs"
-# one job more than cores: tests wait for files and sleep; hostile files take two minutes, their readers are under fuzz.minute, too
-exec ctest --preset release --parallel $((jobs + 1)) -E '^cli.hostile_files$'
+# Three jobs a core: many tests wait for files or sleep. Hostile files take two minutes, their readers are under fuzz.minute, too.
+exec ctest --preset release --parallel $((3 * jobs)) -E '^cli.hostile_files$'
