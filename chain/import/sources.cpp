@@ -189,10 +189,10 @@ double Sources::value(std::size_t row, const std::string& quantity, bool may_be_
   const ForeignColumn& column = *found->second.column;
   const double number = column.values[row];
   if (std::isfinite(number)) return number * found->second.factor;
-  if (!column.bad.empty() && row == column.bad_row)
+  if (!column.bad.empty() && row >= column.bad_row)
     throw InvalidInput(
         fmt::format("{}: '{}' is no number; write it like 1.5e-3, with a decimal point, or as decimal in {} says",
-                    place(row, quantity), column.bad, mapping_));
+                    place(column.bad_row, quantity), column.bad, mapping_));
   if (may_be_undefined && std::isnan(number)) return kUndefined;
   throw InvalidInput(fmt::format("{}: is {}; remove the row or repeat the test", place(row, quantity),
                                  std::isnan(number) ? "undefined" : "infinite"));

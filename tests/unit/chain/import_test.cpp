@@ -250,6 +250,17 @@ TEST_F(Import, RefusesWithFileLineColumnAndRemedy) {
   expect_parts(why(nothing, declared + R"(, "names": ["a"])"), {"t.csv: has 14 columns where names has 1"});
 }
 
+TEST_F(Import, NamesTheFirstOfManyTextsThatAreNoNumbers) {
+  const TestRecord& record = ours("ISO-unloading-s1");  // whose sign of strain is read from its last row
+  std::string table = "exx;eyy;ezz;nu;sxx[Pa];syy[Pa];szz[Pa]";
+  for (const Observation& row : record.rows) {
+    const Eigen::Vector3d e = row.strain.tensor.diagonal(), s = row.stress.tensor.diagonal();
+    table += fmt::format("\n{}%;{};{};{};{};{};{}", e(0), e(1), e(2), row.nu, s(0), s(1), s(2));
+  }
+  const std::string message = testing::refusal([&] { imported_from(table, record, ""); });
+  EXPECT_NE(message.find("t.csv: line 2, column 'exx': '0%' is no number"), std::string::npos) << message;
+}
+
 TEST_F(Import, RefusesWhatBecomesInfinite) {
   const auto mapping =
       read_mapping(put("mapping.json", R"({"source": "us", "packings": {"A": {"particles": 1000, "mean_radius": 1e-3,
