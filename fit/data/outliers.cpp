@@ -86,19 +86,22 @@ std::vector<std::size_t> outliers_of(const std::vector<double>& x, double least)
   std::vector<std::size_t> found;
   if (x.size() < kFewest) return found;
   std::vector<double> z(x.size(), 0), scatter(x.size(), 0), bend;
-  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+  for (std::size_t i = 1; i < x.size(); ++i) {
     const Trend trend = trend_at(x, i);
-    const std::size_t reach = std::min({kReach, i, x.size() - 1 - i});
+    const std::size_t behind = x.size() - 1 - i;  // the last row has neighbours on one side
+    const std::size_t reach = behind == 0 ? kReach : std::min({kReach, i, behind});
     std::vector<double> off;
-    for (std::size_t k = i - reach; k <= i + reach; ++k) {
+    for (std::size_t k = i - reach; k <= i + std::min(reach, behind); ++k) {
       off.push_back(x[i] - x[k] + trend.step * (static_cast<double>(k) - static_cast<double>(i)));
     }
     z[i] = std::abs(median(std::move(off)));
     scatter[i] = trend.scatter;
-    bend.push_back(std::abs(x[i] - (x[i - 1] + x[i + 1]) / 2));
+    if (behind > 0) bend.push_back(std::abs(x[i] - (x[i - 1] + x[i + 1]) / 2));
   }
   const double sigma = kWhite * median(std::move(bend));
-  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+  // that one side has company is not known of the last: there may be a jump like any other of the series
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) scatter.back() = std::max(scatter.back(), std::abs(x[i] - x[i - 1]));
+  for (std::size_t i = 1; i < x.size(); ++i) {
     const double usual = std::max({sigma, scatter[i], kNoScatter * std::abs(x[i])});
     if (z[i] > kStandsOut * usual && z[i] > least) found.push_back(i);
   }

@@ -30,6 +30,16 @@ TEST(Outliers, AreFoundWhereTheyWerePut) {
   EXPECT_EQ(outliers_of(x, 0), (Numbers{20, 37, 38}));
 }
 
+TEST(Outliers, ANumberThatWasCutAtTheEndOfAFileIsFound) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> noise(0, 0.002);
+  std::vector<double> x = saturating_curve(24);
+  for (double& v : x) v += noise(engine);
+  EXPECT_EQ(outliers_of(x, 0.05), Numbers{});
+  x.back() = 1.5;
+  EXPECT_EQ(outliers_of(x, 0.05), Numbers{23}) << "and not the row before it";
+}
+
 TEST(Outliers, NoneAreFoundInWhatIsSmoothSteepOrKinked) {
   EXPECT_EQ(outliers_of(saturating_curve(60), 0), Numbers{}) << "a curve without noise";
   std::vector<double> constant(60, 3.0), zigzag, jump;
