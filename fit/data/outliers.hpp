@@ -18,7 +18,8 @@ std::vector<std::string> outlier_warnings(const DataSet& data, const Calibration
 /// volume fraction that all have bears more than the weakest even where it is looser by .04.
 std::vector<std::string> packing_warnings(const DataSet& data);
 
-/// Positions in `x` of what stands out from its neighbours by eight times their scatter and by more than `least`, ascending.
+/// Positions in `x` of what stands out from its neighbours by eight times their scatter and by more than `least`, ascending. The
+/// first is not judged, of the last the scatter is at least the largest step of the others.
 std::vector<std::size_t> outliers_of(const std::vector<double>& x, double least);
 
 }  // namespace grainlaw::fit
