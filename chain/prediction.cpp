@@ -304,7 +304,7 @@ FinishedRuns read_runs_of(const Path& path, const fs::path& folder, const fs::pa
   FinishedRuns runs{read_dataset(from), from};
   require_runs_of(path, runs.dataset, from.string());
   const auto fitted = fitted_dataset(parameters, read_parameters(parameters).law.dataset_digest);
-  if (fitted) require_unseen(runs.dataset, *fitted, from.string());
+  if (fitted) require_judges(runs.dataset, *fitted, from.string());
   return runs;
 }
 

@@ -65,7 +65,7 @@ std::vector<predict::RehearsalRuns> read_rehearsals(const fs::path& given, const
     }
     records.push_back(test.record);
   }
-  if (dataset != nullptr) require_unseen(runs, *dataset, folder.string());
+  if (dataset != nullptr) require_judges(runs, *dataset, folder.string());
   std::vector<predict::RehearsalRuns> paths = by_path(records, dataset);
   if (paths.size() == 1) paths.front().name = name;
   return paths;

@@ -40,20 +40,11 @@ void check_test(const TestRecord& test, Role role) {
   check_series(test.rows, test.path, test.packing, "test " + test.name);
 }
 
-/// Refuses what is not of the material of `first`; a width of 0 is unknown.
+/// Refuses what is not of the material of `first`.
 void check_material(const TestRecord& test, const TestRecord& first) {
-  const auto differs = [&](const char* what, const std::string& ours, const std::string& theirs) {
-    refuse(test, fmt::format("{} of its packing: {}, but {} in test {}; a law is of one material, calibrate them apart",
-                             what, ours, theirs, first.name));
-  };
-  const auto text = [](const ContactModel& contacts) {
-    return fmt::format("{}, friction {}, rolling friction {}, cohesion {} J/m^2", to_string(contacts.normal_force),
-                       contacts.friction, contacts.rolling_friction, contacts.cohesion);
-  };
-  const PackingInfo &ours = test.packing, &theirs = first.packing;
-  if (ours.size_width > 0 && theirs.size_width > 0 && ours.size_width != theirs.size_width)
-    differs("size_width", fmt::to_string(ours.size_width), fmt::to_string(theirs.size_width));
-  if (ours.contacts != theirs.contacts) differs("contacts", text(ours.contacts), text(theirs.contacts));
+  const std::string differs = other_material(test.packing, first.packing);
+  if (!differs.empty())
+    refuse(test, fmt::format("{} in test {}; a law is of one material, calibrate them apart", differs, first.name));
 }
 
 bool same_series(const TestRecord& a, const TestRecord& b) {

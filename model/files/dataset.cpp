@@ -98,7 +98,7 @@ Dataset read_dataset(const fs::path& folder) {
   } else {
     dataset.seeds = seeds_of(dataset);
   }
-  require_unseen(dataset, dataset, name);
+  require_judges(dataset, dataset, name);
   dataset.digest = digest_of(dataset);
   if (document.contains("digest") && document["digest"] != dataset.digest) {
     throw InvalidInput(fmt::format("{}: digest: does not match the tests, which give {}; remove the key to accept them",
@@ -170,13 +170,20 @@ std::optional<Dataset> fitted_dataset(const fs::path& parameters, const std::str
   return dataset;
 }
 
-void require_unseen(const Dataset& runs, const Dataset& fitted, const std::string& name) {
+void require_judges(const Dataset& runs, const Dataset& fitted, const std::string& name) {
   for (const DatasetTest& test : runs.tests) {
-    const std::vector<Observation>& rows = test.record.rows;
     if (test.record.role != Role::validation && test.record.role != Role::rehearsal) continue;
-    if (std::ranges::all_of(rows, [](const Observation& row) { return row.P_star == 0; })) continue;  // may well agree
+    const bool unjammed = std::ranges::all_of(test.record.rows, [](const Observation& row) { return row.P_star == 0; });
     for (const DatasetTest& other : fitted.tests) {
-      if (other.record.role != Role::calibration || other.sha256 != test.sha256) continue;
+      if (other.record.role != Role::calibration) continue;
+      const std::string differs = other_material(test.record.packing, other.record.packing);
+      if (!differs.empty()) {
+        throw InvalidInput(
+            fmt::format("{}: test {}: {} in test {}, which is fitted; a law is of one material, calibrate "
+                        "one for the other",
+                        name, test.record.name, differs, other.record.name));
+      }
+      if (unjammed || other.sha256 != test.sha256) continue;  // unjammed tests may well agree
       throw InvalidInput(
           fmt::format("{}: test {} ({}) holds the series of test {}, which is fitted; what is fitted cannot judge the "
                       "law, remove one",

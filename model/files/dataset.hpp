@@ -69,8 +69,8 @@ Dataset adopt(const Dataset& dataset, const std::filesystem::path& from, const s
 std::optional<Dataset> fitted_dataset(const std::filesystem::path& parameters, const std::string& digest);
 
 /// Throws InvalidInput naming the first test of `runs`, the data set of `name`, that is to judge the law (validation,
-/// rehearsal) although a test of role calibration in `fitted` holds the same series.
-void require_unseen(const Dataset& runs, const Dataset& fitted, const std::string& name);
+/// rehearsal) and cannot: a test of role calibration in `fitted` is of another material or holds the same series.
+void require_judges(const Dataset& runs, const Dataset& fitted, const std::string& name);
 
 /// Throws InvalidInput naming the first test in the data set of `name` that does not follow `path`, or that was fitted.
 void require_runs_of(const Path& path, const Dataset& dataset, const std::string& name);

@@ -42,6 +42,10 @@ constexpr auto fields_of(std::type_identity<PackingInfo>) {
 }
 static_assert(tells_every_member<PackingInfo>());
 
+/// What sets the material of `ours` apart from that of `theirs`: "size_width of its packing: 1, but 3"; empty for one material.
+/// A width of 0 is unknown. The size and the stiffness of the spheres are units, and their number is none of it.
+std::string other_material(const PackingInfo& ours, const PackingInfo& theirs);
+
 struct TestRecord {
   std::string name;  ///< file name of the series without its extension; letters, digits, '.', '-', '_'
   Role role = Role::calibration;

@@ -125,6 +125,32 @@ TEST_F(ResultFiles, ASeriesIsNotBothFittedAndJudged) {
   }
 }
 
+// Nor does another material.
+TEST_F(ResultFiles, AJudgeIsOfTheFittedMaterial) {
+  Dataset dataset = small_dataset(folder_);
+  DatasetTest& judge = dataset.tests[1];
+  judge.record.role = Role::validation;
+  const auto said = [&] {
+    write_dataset_index(folder_, dataset);
+    return refusal([&] { read_dataset(folder_); });
+  };
+  judge.record.packing.particles *= 2;
+  EXPECT_EQ(said(), "accepted") << "more of the same";
+  judge.record.packing.size_width = 0;
+  EXPECT_EQ(said(), "accepted") << "unknown";
+  judge.record.packing.size_width = 1;
+  EXPECT_NE(said().find(fmt::format("test {}: size_width of its packing: 1, but 3 in test {}, which is fitted",
+                                    judge.record.name, dataset.tests[0].record.name)),
+            std::string::npos)
+      << said();
+  judge.record.role = Role::description;
+  EXPECT_EQ(said(), "accepted") << "by laws of its own";
+  judge.record.role = Role::rehearsal;
+  judge.record.packing.size_width = 3;
+  judge.record.packing.contacts.friction = 0.5;
+  EXPECT_NE(said().find("friction 0.5"), std::string::npos) << said();
+}
+
 TEST_F(ResultFiles, ADataSetBesideALawIsTheFittedOneByItsDigest) {
   const Dataset dataset = small_dataset(make_subfolder(folder_, "dataset"));
   const std::filesystem::path parameters = folder_ / "parameters.json";
