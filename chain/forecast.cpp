@@ -132,7 +132,7 @@ Forecast forecast(const PredictionInput& input, const Execution& execution) {
   const Path& path = input.path.path;
   if (input.new_runs) {
     const NewRuns& runs = *input.new_runs;
-    const auto seeds = dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name);
+    const auto seeds = dem::new_seeds(runs.spec, input.path, runs.seeds, runs.fitted, input.path_name);
     forecast = forecast_of(plan(runs.spec, input.path, seeds, input.path_name), false, runs.spec.preparation,
                            runs.store, execution);
   }

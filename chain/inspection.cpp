@@ -113,10 +113,12 @@ void inspect_test(const fs::path& file, const fs::path& output, const Execution&
 
 void inspect_path(const fs::path& file, const Company& company, const fs::path& output, const Execution& execution,
                   Inspection& seen) {
-  PredictionInput input{.law = {}, .law_name = "", .path = read_path(file), .path_name = file.string()};
+  const bool fitted = !company.parameters.empty();
+  PredictionInput input{.law = {}, .law_file = company.parameters, .path = read_path(file), .path_name = file.string()};
   input.law.range = ValidRange{};
-  if (!company.parameters.empty()) input.law = read_parameters(company.parameters).law;
-  if (company.spec && !law_decides(input.path.path)) input.new_runs = {*company.spec, {}, output};
+  if (fitted) input.law = read_parameters(company.parameters).law;
+  if (company.spec && !law_decides(input.path.path))
+    input.new_runs = fitted ? new_runs(input, *company.spec, {}, output) : NewRuns{*company.spec, {}, output};
   seen.holds = {fmt::format("{} from a volume fraction of {:.4g}", counted(input.path.path.segments.size(), "segment"),
                             input.path.path.nu)};
   seen.forecast = forecast(input, execution);
@@ -261,7 +263,7 @@ Inspection inspected(const fs::path& file, const Company& company, const fs::pat
   return seen;
 }
 
-/// The first SPEC, or the spec beside the first parameters.json.
+/// The first SPEC, or where none is given the spec beside the first parameters.json.
 Company company_of(const std::vector<fs::path>& files) {
   Company company;
   for (const fs::path& file : files) {
@@ -272,10 +274,15 @@ Company company_of(const std::vector<fs::path>& files) {
       if (kind == nullptr || kind->schema != Schema::parameters || !company.parameters.empty()) continue;
       read_parameters(file);
       company.parameters = file;
-      if (!company.spec) company.spec = spec_of_calibration({}, file);
     } catch (const Error&) {
       continue;  // it is refused where it stands
     }
+  }
+  if (company.spec || company.parameters.empty()) return company;
+  try {
+    company.spec = spec_of_calibration({}, company.parameters);
+  } catch (const Error&) {
+    return company;  // nobody asked for it
   }
   return company;
 }

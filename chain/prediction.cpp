@@ -240,7 +240,7 @@ std::string bands_along(const Law& law) {
 }
 
 std::vector<dem::PlannedTest> planned_runs(const NewRuns& runs, const PredictionInput& input) {
-  return plan(runs.spec, input.path, dem::new_seeds(runs.spec, input.path, runs.seeds, input.path_name),
+  return plan(runs.spec, input.path, dem::new_seeds(runs.spec, input.path, runs.seeds, runs.fitted, input.path_name),
               input.path_name);
 }
 
@@ -280,10 +280,8 @@ PredictionInput read_prediction_input(const fs::path& parameters, const fs::path
 }
 
 PredictionInput prediction_input(const fs::path& parameters, PathFile path, const std::string& path_name) {
-  PredictionInput input{.law = read_parameters(parameters).law,
-                        .law_name = parameters.string(),
-                        .path = std::move(path),
-                        .path_name = path_name};
+  PredictionInput input{
+      .law = read_parameters(parameters).law, .law_file = parameters, .path = std::move(path), .path_name = path_name};
   input.parameters = {{"file", parameters.string()},
                       {"sha256", sha256_of_file(parameters)},
                       {"dataset_digest", input.law.dataset_digest}};
@@ -299,11 +297,33 @@ dem::Spec spec_of_calibration(const fs::path& spec, const fs::path& parameters) 
   return dem::read_spec(file);
 }
 
-FinishedRuns read_runs_of(const Path& path, const fs::path& folder, const fs::path& parameters) {
+NewRuns new_runs(const PredictionInput& input, dem::Spec spec, std::vector<std::uint64_t> seeds,
+                 const fs::path& store) {
+  const fs::path beside = input.law_file.has_parent_path() ? input.law_file.parent_path() : fs::path(".");
+  NewRuns runs{std::move(spec), std::move(seeds), store.empty() ? beside : store};
+  const dem::PreparationOptions& prepared = runs.spec.preparation;
+  const PackingInfo packing{.particles = prepared.packing.particles,
+                            .size_width = prepared.packing.size_width,
+                            .contacts = prepared.choice.contacts};
+  const auto fitted = fitted_dataset(input.law_file, input.law.dataset_digest);
+  if (!fitted) return runs;
+  for (const TestRecord& test : tests_of(*fitted, Role::calibration)) {
+    const std::string differs = other_material(packing, test.packing);
+    if (!differs.empty()) {
+      throw InvalidInput(fmt::format(
+          "SPEC of new runs: {} in test {}, which is fitted; a law is of one material, calibrate one for the other",
+          differs, test.name));
+    }
+    if (test.packing.particles == packing.particles) runs.fitted.push_back(test.packing.seed);
+  }
+  return runs;
+}
+
+FinishedRuns finished_runs(const PredictionInput& input, const fs::path& folder) {
   const fs::path from = dataset_folder(folder);
   FinishedRuns runs{read_dataset(from), from};
-  require_runs_of(path, runs.dataset, from.string());
-  const auto fitted = fitted_dataset(parameters, read_parameters(parameters).law.dataset_digest);
+  require_runs_of(input.path.path, runs.dataset, from.string());
+  const auto fitted = fitted_dataset(input.law_file, input.law.dataset_digest);
   if (fitted) require_judges(runs.dataset, *fitted, from.string());
   return runs;
 }
@@ -316,7 +336,7 @@ predict::PredictionFolder predict_path(const PredictionInput& input, const fs::p
     throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem or --against too");
   const Law law{
       input.law, rungs_of(input), path, decides ? std::vector<StraightSegment>{} : resolve(path), {{}, execution.stop}};
-  for (const Rung model : law.rungs) require_parameters(input.law, model, input.law_name);
+  for (const Rung model : law.rungs) require_parameters(input.law, model, input.law_file.string());
   check_starts(input);
   if (input.new_runs) planned_runs(*input.new_runs, input);  // likewise what cannot be run
 

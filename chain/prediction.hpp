@@ -22,6 +22,8 @@ struct NewRuns {
   dem::Spec spec;                    ///< how their packings are prepared
   std::vector<std::uint64_t> seeds;  ///< of the packings; empty: PATH's, else as many as calibrated, following those
   std::filesystem::path store;       ///< folder that holds runs/
+  std::vector<std::uint64_t> fitted =
+      {};  ///< seeds of packings like the spec's that the law was fitted to, besides the spec's
 };
 
 /// Runs of the path that are there.
@@ -33,7 +35,7 @@ struct FinishedRuns {
 struct PredictionInput {
   CalibratedLaw law;
   Json parameters = {};  ///< where the law is from: {file, sha256, dataset_digest}; for the prediction's files
-  std::string law_name;  ///< stands for it in messages
+  std::filesystem::path law_file;  ///< parameters.json
   PathFile path;
   std::string path_name;                         ///< likewise
   std::optional<Rung> model = {};                ///< none: reduced, evolution, and memory where it is calibrated
@@ -52,10 +54,14 @@ PredictionInput prediction_input(const std::filesystem::path& parameters, PathFi
 /// InvalidInput naming the file.
 dem::Spec spec_of_calibration(const std::filesystem::path& spec, const std::filesystem::path& parameters);
 
-/// The runs in the folder of a data set or of a prediction. Throws InvalidInput unless all follow `path` and none was
-/// fitted, as far as their roles and the data set beside `parameters` say.
-FinishedRuns read_runs_of(const Path& path, const std::filesystem::path& folder,
-                          const std::filesystem::path& parameters);
+/// Runs of the input's path on packings of `spec`, in `store` or, where that is empty, beside the law. Throws InvalidInput
+/// where the data set beside the law is of another material.
+NewRuns new_runs(const PredictionInput& input, dem::Spec spec, std::vector<std::uint64_t> seeds,
+                 const std::filesystem::path& store);
+
+/// The runs in the folder of a data set or of a prediction. Throws InvalidInput unless all follow the input's path, are of
+/// the law's material and none was fitted, as far as their roles and the data set beside the law say.
+FinishedRuns finished_runs(const PredictionInput& input, const std::filesystem::path& folder);
 
 /// Curves of each rung, comparisons, the rung that the path needs. Writes the folder `output`: prediction.json, a CSV for
 /// each curve, with runs dem/ and comparison.json. Throws InvalidInput before anything is written for a path, a rung or a

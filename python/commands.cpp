@@ -147,15 +147,13 @@ Predicted predict_path(const py::object& law, const py::object& path, const py::
   if (!runs.dem && !(runs.seeds.is_none() && runs.spec.is_none() && runs.store.is_none()))
     throw InvalidInput("seeds, spec, store: are those of new runs; give dem=True too");
   if (runs.dem) {
-    const fs::path parent = read->file.has_parent_path() ? read->file.parent_path() : fs::path(".");
-    const fs::path store = file_or_none(runs.store, "store");
     dem::Spec spec = py::isinstance<py::dict>(runs.spec)
                          ? dem::spec_from_json(document_of(runs.spec, "spec"), "spec")
                          : chain::spec_of_calibration(file_or_none(runs.spec, "spec"), read->file);
-    input.new_runs = {std::move(spec), seeds_of(runs.seeds), store.empty() ? parent : store};
+    input.new_runs = chain::new_runs(input, std::move(spec), seeds_of(runs.seeds), file_or_none(runs.store, "store"));
   }
   auto content = result_of(wishes, [&](const Execution& execution) {
-    if (!against.empty()) input.finished_runs = chain::read_runs_of(input.path.path, against, read->file);
+    if (!against.empty()) input.finished_runs = chain::finished_runs(input, against);
     return chain::predict_path(input, folder, execution);
   });
   return {std::make_shared<predict::PredictionFolder>(std::move(content)), folder};

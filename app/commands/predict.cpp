@@ -29,12 +29,6 @@ struct PredictOptions {
   bool dry_run = false;
 };
 
-chain::NewRuns new_runs(const PredictOptions& options) {
-  const fs::path parent = options.parameters.has_parent_path() ? options.parameters.parent_path() : fs::path(".");
-  return {chain::spec_of_calibration(options.spec, options.parameters), options.seeds,
-          options.store.empty() ? parent : options.store};
-}
-
 /// Adds the runs in `folder` to the law's rehearsals, also to the law of `input`. The path's own does not count for its bands.
 void keep_as_rehearsal(const PredictOptions& options, const fs::path& folder, const Session& session,
                        chain::PredictionInput& input) {
@@ -51,17 +45,20 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   chain::PredictionInput input = chain::read_prediction_input(options.parameters, options.path);
   input.model = options.model;
   input.initial = options.initial;
-  if (options.dem) input.new_runs = new_runs(options);
+  if (options.dem) {
+    input.new_runs = chain::new_runs(input, chain::spec_of_calibration(options.spec, options.parameters), options.seeds,
+                                     options.store);
+  }
   if (options.dry_run) return say_forecast(options.path.string(), chain::forecast(input, session), session);
   if (!options.against.empty()) {
-    input.finished_runs = chain::read_runs_of(input.path.path, options.against, options.parameters);
+    input.finished_runs = chain::finished_runs(input, options.against);
     if (options.rehearse) keep_as_rehearsal(options, options.against, session, input);
   }
   predict::PredictionFolder prediction = chain::predict_path(input, options.output, session);
   if (options.rehearse && options.dem) {
     keep_as_rehearsal(options, options.output, session, input);
     input.new_runs.reset();
-    input.finished_runs = chain::read_runs_of(input.path.path, options.output, options.parameters);
+    input.finished_runs = chain::finished_runs(input, options.output);
     prediction = chain::predict_path(input, options.output, session);
   }
   print_result(session.json ? json_text(summary_of(prediction, options.output)) : text_of(prediction, options.output));

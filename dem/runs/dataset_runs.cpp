@@ -57,14 +57,16 @@ std::vector<PlannedTest> plan(const Spec& spec) {
 }
 
 std::vector<std::uint64_t> new_seeds(const Spec& spec, const PathFile& path, const std::vector<std::uint64_t>& wished,
-                                     const std::string& name) {
+                                     const std::vector<std::uint64_t>& fitted, const std::string& name) {
   std::vector<std::uint64_t> seeds = wished.empty() ? path.seeds : wished;
+  std::set<std::uint64_t> used(spec.seeds.begin(), spec.seeds.end());
+  used.insert(fitted.begin(), fitted.end());
   if (seeds.empty()) {
-    const std::uint64_t largest = *std::max_element(spec.seeds.begin(), spec.seeds.end());
+    const std::uint64_t largest = *used.rbegin();
     for (std::size_t i = 1; i <= spec.seeds.size(); ++i) seeds.push_back(largest + i);
   }
   for (std::size_t i = 0; i < seeds.size(); ++i) {
-    if (std::find(spec.seeds.begin(), spec.seeds.end(), seeds[i]) != spec.seeds.end()) {
+    if (used.contains(seeds[i])) {
       throw InvalidInput(
           fmt::format("{}: seeds: {} was used for the calibration; a prediction is tested on packings it has not seen, "
                       "give another",

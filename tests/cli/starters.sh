@@ -78,6 +78,18 @@ for file in "${shipped[@]}"; do "$grainlaw" check "$source/$file" --threads 1 >/
 echo '{"initial": {"nu": 0.728}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.9}}]}' >far.json
 "$grainlaw" check out/parameters.json far.json | grep -q 'deviatoric strain 0.9 lies beyond the calibrated 0.26' || fail far
 
+# a law is judged neither by another material nor by packings that it was fitted to under another SPEC
+jq '.size_width = 1' out/spec.resolved.json >narrow.json
+jq '.seeds = [101]' out/spec.resolved.json >reseeded.json
+refused() { # word command...
+  code=0
+  "$grainlaw" "${@:2}" >/dev/null 2>err || code=$?
+  [[ $code == 2 && ! -e judged ]] && grep -q "$1" err || fail "${*:2}: $code $(cat err)"
+}
+refused 'SPEC of new runs: size_width of its packing: 1, but 3 in test' check out/parameters.json narrow.json path.json
+refused 'SPEC of new runs: size_width of its packing: 1, but 3 in test' predict out/parameters.json path.json -o judged --dem --spec narrow.json
+refused 'seeds: 1 was used for the calibration' predict out/parameters.json path.json -o judged --dem --seeds 1 --spec reseeded.json
+
 # all refusals of all files, exit code 2
 echo '{"particle": 5, "seed": 1, "tests": [{"mode": "D4"}]}' >bad.json
 echo '{"initial": {"nu": 0.7}, "segments": [{"mode": "D2", "extent": {"eps_vol": 0.1}}]}' >bad_path.json

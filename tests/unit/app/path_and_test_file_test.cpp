@@ -61,7 +61,7 @@ TEST(Examples, AreValidInput) {
   for (const char* name : {"uniaxial-0.695.json", "uniaxial-0.728.json"}) {
     const PathFile path = read_path(quickstart / name);
     // its packings are shared by the predictions and are none of the calibration's
-    EXPECT_EQ(plan(spec, path, dem::new_seeds(spec, path, {}, name), name).front().preparation.keep_unloading,
+    EXPECT_EQ(plan(spec, path, dem::new_seeds(spec, path, {}, {}, name), name).front().preparation.keep_unloading,
               spec.keep);
   }
 }

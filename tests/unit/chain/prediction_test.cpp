@@ -22,7 +22,7 @@ class PathPrediction : public testing::TemporaryFolder {
   /// none.
   static PredictionInput input(const std::vector<Rung>& broken) {
     PredictionInput input;
-    input.law_name = "the law";
+    input.law_file = "the law";
     input.path_name = "the path";
     input.law.parameters = testing::synthetic_truth();
     input.law.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
@@ -155,6 +155,42 @@ TEST_F(PathPrediction, LabelsAPathOutsideRehearsals) {
   EXPECT_GT(rehearsed.law.rehearsals[0].rungs[0].s_par.square, 1e-6);
   rehearsed.model = Rung::evolution;
   EXPECT_TRUE(predict_path(rehearsed, out(), {}).recommended.rehearsed);
+}
+
+// A law that was fitted to width 3 is not judged by spheres of one size, nor by the packings that it was fitted to.
+TEST_F(PathPrediction, RunsAreOfTheMaterialAndOfOtherPackings) {
+  const PredictionInput plain = input({});
+  FinishedRuns judges = runs(plain.path.path);
+  Dataset fitted = judges.dataset;
+  TestRecord& record = fitted.tests[0].record;
+  record.role = Role::calibration;
+  record.packing.seed = 31;
+  record.packing.particles = 500;
+  record.rows.pop_back();
+  PredictionInput known = plain;
+  known.law_file = folder_ / "parameters.json";
+  const std::filesystem::path beside = make_subfolder(folder_, "dataset");
+  write_series(beside / "UNI-s7.csv", record.rows);
+  write_dataset_index(beside, fitted);
+
+  dem::Spec spec;
+  spec.preparation.packing.particles = 500;
+  spec.preparation.packing.size_width = record.packing.size_width;
+  EXPECT_EQ(new_runs(known, spec, {4}, "").fitted, std::vector<std::uint64_t>{31});
+  EXPECT_EQ(new_runs(known, spec, {4}, "").store, folder_);
+  spec.preparation.packing.particles = 501;
+  EXPECT_EQ(new_runs(known, spec, {4}, "").fitted.size(), 0u) << "of another packing by the same seed";
+  EXPECT_EQ(testing::refusal([&] { finished_runs(known, judges.folder); }), "accepted");
+
+  spec.preparation.packing.size_width = 1.5;
+  const std::string of_spec = testing::refusal([&] { new_runs(known, spec, {4}, ""); });
+  EXPECT_NE(of_spec.find("SPEC of new runs: size_width of its packing: 1.5, but 3 in test UNI-s7"), std::string::npos)
+      << of_spec;
+  EXPECT_EQ(testing::refusal([&] { new_runs(plain, spec, {4}, ""); }), "accepted") << "nobody knows";
+  judges.dataset.tests[0].record.packing.contacts.friction = 0.5;
+  write_dataset_index(judges.folder, judges.dataset);
+  const std::string of_runs = testing::refusal([&] { finished_runs(known, judges.folder); });
+  EXPECT_NE(of_runs.find("test UNI-s7: contacts of its packing: hooke, friction 0.5"), std::string::npos) << of_runs;
 }
 
 TEST_F(PathPrediction, LeavesNoFolderAfterARefusal) {

@@ -367,17 +367,19 @@ TEST_F(Runs, ProbesAreKeptBesideTheSeries) {
 }
 
 TEST_F(Runs, OfPredictionsUseNewPackings) {
+  using Seeds = std::vector<std::uint64_t>;
   const Spec spec = tiny_spec();
   PathFile path{d2(0.75), {}, {}};
-  EXPECT_EQ(new_seeds(spec, path, {}, "p.json"), (std::vector<std::uint64_t>{3, 4}));
+  const auto seeds = [&](Seeds wished, Seeds fitted) { return new_seeds(spec, path, wished, fitted, "p.json"); };
+  const auto said = [&](Seeds wished, Seeds fitted) { return refusal([&] { seeds(wished, fitted); }); };
+  EXPECT_EQ(seeds({}, {}), (Seeds{3, 4}));
+  EXPECT_EQ(seeds({}, {5, 7}), (Seeds{8, 9})) << "fitted by another spec";
   path.seeds = {11};
-  EXPECT_EQ(new_seeds(spec, path, {}, "p.json"), std::vector<std::uint64_t>{11});
-  EXPECT_EQ(new_seeds(spec, path, {12, 13}, "p.json"), (std::vector<std::uint64_t>{12, 13}));
-  EXPECT_NE(refusal([&] {
-              new_seeds(spec, path, {5, 2}, "p.json");
-            }).find("p.json: seeds: 2 was used for the calibration"),
-            std::string::npos);
-  EXPECT_NE(refusal([&] { new_seeds(spec, path, {5, 5}, "p.json"); }).find("given twice"), std::string::npos);
+  EXPECT_EQ(seeds({}, {}), Seeds{11});
+  EXPECT_EQ(seeds({12, 13}, {}), (Seeds{12, 13}));
+  EXPECT_TRUE(said({5, 2}, {}).starts_with("p.json: seeds: 2 was used for the calibration"));
+  EXPECT_TRUE(said({5, 7}, {7}).starts_with("p.json: seeds: 7 was used for the calibration"));
+  EXPECT_NE(said({5, 5}, {}).find("given twice"), std::string::npos);
 
   const auto tests = plan(spec, path, {11, 12}, "p.json");
   ASSERT_EQ(tests.size(), 2u);
@@ -390,10 +392,8 @@ TEST_F(Runs, OfPredictionsUseNewPackings) {
   const auto denser = plan(spec, {d2(0.76), {}, 50}, {11}, "p.json");  // other rows, the same packing
   EXPECT_EQ(denser[0].rows, 50);
   EXPECT_EQ(preparation_key(denser[0].preparation), preparation_key(a[0].preparation));
-  EXPECT_NE(refusal([&] {
-              plan(spec, {d2(0.69), {}, {}}, {11}, "p.json");
-            }).find("0.69 is not on the unloading branch"),
-            std::string::npos);
+  const std::string off = refusal([&] { plan(spec, {d2(0.69), {}, {}}, {11}, "p.json"); });
+  EXPECT_NE(off.find("0.69 is not on the unloading branch"), std::string::npos) << off;
 }
 
 }  // namespace
