@@ -15,7 +15,6 @@
 namespace grainlaw {
 namespace {
 
-constexpr std::size_t kMaxSegments = 10000;  // as in PATH
 constexpr double kMaxStrain = 100;
 constexpr double kSameStrain = 1e-14;    // changes of every component up to this are rounding and have no direction
 constexpr double kSameDirection = 1e-9;  // difference of unit directions that are taken for one

@@ -144,6 +144,12 @@ std::vector<PathSegment> segments_from_json(const Json& segments, const std::str
   std::vector<PathSegment> result;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     append_segment(segments[i], fmt::format("{}: {}segments[{}]", name, place, i), both, result);
+    if (result.size() > kMaxSegments) {
+      throw InvalidInput(
+          fmt::format("{}: {}segments[{}].cycles: with these the path has {} straight pieces, more than {}; "
+                      "give fewer cycles",
+                      name, place, i, result.size(), kMaxSegments));
+    }
   }
   return result;
 }

@@ -1,4 +1,6 @@
 // PATH and TEST files.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 #include "dem/files/state_file.hpp"
@@ -121,6 +123,12 @@ TEST_F(PathFiles, CyclesBecomeLegs) {
       refused(R"({"mode": "D2", "cycles": {"amplitude": 0.1, "count": 0}})").find("segments[0].cycles.count: got 0"),
       std::string::npos);
   EXPECT_NE(refused(R"({"mode": "D2", "cycles": {"count": 1}})").find("misses the key 'amplitude'"), std::string::npos);
+  // what is written can be read again, however many legs it has
+  const std::string many = R"({"mode": "D2", "cycles": {"amplitude": 1e-3, "count": 1000}})";
+  EXPECT_NE(refused(fmt::format("{0}, {0}, {0}, {0}, {0}", many))
+                .find("segments[4].cycles: with these the path has 10005 straight pieces, more than 10000"),
+            std::string::npos);
+  EXPECT_EQ(refused(fmt::format("{0}, {0}, {0}, {0}", many)), "accepted");
 }
 
 TEST_F(PathFiles, FreeRatesKeepToConditions) {
