@@ -144,11 +144,13 @@ void inspect_mapping(const fs::path& file, const Execution& execution, Inspectio
   const Mapping mapping = read_mapping(file);
   std::size_t rows = 0;
   std::vector<std::string> paths;
+  std::vector<ImportedTest> tests;
   for (const ForeignTest& test : read_foreign(mapping, execution)) {
-    const ImportedTest ours = imported(mapping, test);
+    const ImportedTest& ours = tests.emplace_back(imported(mapping, test));
     rows += ours.record.rows.size();
     paths.push_back(fmt::format("{}: {}", ours.record.name, ours.says.at(1)));
   }
+  dataset_of(mapping, tests);
   seen.holds = {fmt::format("{} of others, {}", counted(mapping.tests.size(), "test"), counted(rows, "row"))};
   seen.holds.insert(seen.holds.end(), paths.begin(), paths.end());
 }

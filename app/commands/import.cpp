@@ -27,7 +27,9 @@ ExitCode import(const ImportOptions& options, const Session& session) {
   for (const chain::ForeignTest& test : foreign) tests.push_back(chain::imported(mapping, test));
   if (!session.json) print_result(paths_text(tests));
   for (const std::string& suspicion : chain::suspicions(tests)) session.watch.log("warning: " + suspicion);
-  if (!options.dry_run) {
+  if (options.dry_run) {
+    chain::dataset_of(mapping, tests);  // refuses what would be refused
+  } else {
     const Dataset dataset = chain::write_imported(mapping, foreign, tests, options.output, session);
     if (!session.json) print_result(written_text(dataset, options.output));
   }

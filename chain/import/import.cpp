@@ -11,6 +11,7 @@
 #include "chain/import/straight_path.hpp"
 #include "model/files/column.hpp"
 #include "model/files/csv_table.hpp"
+#include "model/files/digest.hpp"
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
 #include "model/files/series_csv.hpp"
@@ -174,12 +175,25 @@ std::vector<std::string> suspicions(const std::vector<ImportedTest>& tests) {
   return all;
 }
 
+Dataset dataset_of(const Mapping& mapping, const std::vector<ImportedTest>& tests) {
+  Dataset dataset;
+  for (const ImportedTest& test : tests) {
+    dataset.tests.push_back({.record = test.record,
+                             .sha256 = sha256(series_text(test.record.rows)),
+                             .run = "",
+                             .cost = {},
+                             .warnings = {}});
+  }
+  require_judges(dataset, dataset, mapping.name);
+  return dataset;
+}
+
 Dataset write_imported(const Mapping& mapping, const std::vector<ForeignTest>& foreign,
                        const std::vector<ImportedTest>& tests, const fs::path& output, const Execution& execution) {
   check_output(foreign, output);
+  Dataset dataset = dataset_of(mapping, tests);
   make_output_folder(output);
   fs::remove(output / "dataset.json");  // written last: until then there is no data set
-  Dataset dataset;
   dataset.provenance = provenance(execution);
   dataset.provenance["source"] = mapping.source;
   dataset.provenance["mapping"] = {{"file", mapping.name}, {"sha256", mapping.sha256}};
@@ -191,7 +205,6 @@ Dataset write_imported(const Mapping& mapping, const std::vector<ForeignTest>& f
     if (!foreign[i].foreign.extra.titles.empty())
       write_durably(output / (record.name + ".extra.csv"), extra_text(foreign[i].foreign.extra));
     dataset.provenance["tests"][record.name] = Json(tests[i].provenance);
-    dataset.tests.push_back({.record = record, .sha256 = "", .run = "", .cost = {}, .warnings = {}});
   }
   write_dataset_index(output, dataset);
   return read_dataset(output);

@@ -35,7 +35,11 @@ ImportedTest imported(const Mapping& mapping, const ForeignTest& test);
 /// What speaks against the units of a test: a pressure at its start that is 30 times off what unloading of the same packing has there.
 std::vector<std::string> suspicions(const std::vector<ImportedTest>& tests);
 
-/// Writes dataset.json, NAME.csv and, where columns were left over, NAME.extra.csv of each test, and reads it again.
+/// The data set that they make. Throws InvalidInput naming the first test that cannot judge what others are fitted to.
+Dataset dataset_of(const Mapping& mapping, const std::vector<ImportedTest>& tests);
+
+/// Writes dataset.json, NAME.csv and, where columns were left over, NAME.extra.csv of each test, and reads it again. Throws as
+/// dataset_of does, before anything is written.
 Dataset write_imported(const Mapping& mapping, const std::vector<ForeignTest>& foreign,
                        const std::vector<ImportedTest>& tests, const std::filesystem::path& output,
                        const Execution& execution);

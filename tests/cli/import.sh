@@ -31,6 +31,20 @@ grep -q 'note .*left out: not all of it are numbers' shown.txt || fail "$(cat sh
 "$grainlaw" import mapping.json -o imported --json | jq -e '.tests | length == 15' >/dev/null || fail "--json"
 "$grainlaw" check imported >/dev/null || fail "check of the data set"
 
+# A test that cannot judge what is fitted is refused before a good data set changes.
+cp -r imported sound
+for cannot in '.packings.strange = (.packings.p1 | .size_width = 1 | .seed = 99) | .tests[-1].packing = "strange"' .; do
+  jq ".packings[].size_width = 3 | .tests += [.tests[1] | .name = \"judge\" | .role = \"validation\"] | $cannot" mapping.json >judged.json
+  for command in "import judged.json -o imported" "import judged.json -o none" "import judged.json --dry-run" "check judged.json"; do
+    code=0
+    # shellcheck disable=SC2086  # words
+    "$grainlaw" $command >/dev/null 2>err || code=$?
+    [[ $code == 2 ]] && grep -Eq 'judged.json: test judge( .validation. holds the series|: size_width of its packing: 1, but 3)' err ||
+      fail "$command, $cannot: $code $(cat err)"
+    [[ ! -e none ]] && diff -r sound imported >/dev/null || fail "$command, $cannot changed something"
+  done
+done
+
 # same_law A B TOLERANCE: parameters, relative to their errors.
 same_law() {
   jq -es --argjson tolerance "$3" '.[0].parameters as $a | .[1].parameters as $b | all($a | keys[];
