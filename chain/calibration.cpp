@@ -209,6 +209,7 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
   } else {
     if (missing == dem::MissingRuns::simulated) dem::require_engines(plan(*input.spec), output, execution);
     const fs::path folder = output / "dataset";
+    require_rehearsals_of(dem::packing_of(*input.spec), folder);
     result.dataset = without_empty_folders({folder, output}, [&] {
       make_output_folder(output);
       make_subfolder(output, "dataset");

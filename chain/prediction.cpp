@@ -301,10 +301,7 @@ NewRuns new_runs(const PredictionInput& input, dem::Spec spec, std::vector<std::
                  const fs::path& store) {
   const fs::path beside = input.law_file.has_parent_path() ? input.law_file.parent_path() : fs::path(".");
   NewRuns runs{std::move(spec), std::move(seeds), store.empty() ? beside : store};
-  const dem::PreparationOptions& prepared = runs.spec.preparation;
-  const PackingInfo packing{.particles = prepared.packing.particles,
-                            .size_width = prepared.packing.size_width,
-                            .contacts = prepared.choice.contacts};
+  const PackingInfo packing = dem::packing_of(runs.spec);
   const auto fitted = fitted_dataset(input.law_file, input.law.dataset_digest);
   if (!fitted) return runs;
   for (const TestRecord& test : tests_of(*fitted, Role::calibration)) {

@@ -80,6 +80,18 @@ std::vector<predict::RehearsalRuns> rehearsals_of(const Dataset& dataset, const 
   return all;
 }
 
+void require_rehearsals_of(const PackingInfo& packing, const fs::path& folder) {
+  for (const fs::path& each : rehearsal_folders(folder)) {
+    for (const DatasetTest& test : read_dataset(each).tests) {
+      const std::string differs = other_material(test.record.packing, packing);
+      if (differs.empty()) continue;
+      throw InvalidInput(
+          fmt::format("{}: test {}: {} in SPEC; a law is of one material, give another -o or remove this folder",
+                      each.string(), test.record.name, differs));
+    }
+  }
+}
+
 void adopt_rehearsals(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (fs::equivalent(from, to, error)) return;

@@ -19,6 +19,10 @@ inline constexpr const char* kRehearsalsFolder = "rehearsals";  ///< beside data
 /// data set cannot be read or has a test of role calibration.
 std::vector<predict::RehearsalRuns> rehearsals_of(const Dataset& dataset, const std::filesystem::path& folder);
 
+/// Throws InvalidInput naming the first run below rehearsals/ of `folder` that is of another material than `packing`: packings
+/// that are to take the place of the data set there.
+void require_rehearsals_of(const PackingInfo& packing, const std::filesystem::path& folder);
+
 /// The runs of `given`, the folder of a data set or of a prediction, by path; named after `name` where there is one path.
 /// `dataset`: whose calibration tests tell which packings were fitted. Throws likewise.
 std::vector<predict::RehearsalRuns> read_rehearsals(const std::filesystem::path& given, const std::string& name,

@@ -216,6 +216,13 @@ void refuse_keys_of_other_engine(const Json& document, const EngineChoice& choic
   }
 }
 
+PackingInfo packing_of(const Spec& spec) {
+  const PreparationOptions& prepared = spec.preparation;
+  return {.particles = prepared.packing.particles,
+          .size_width = prepared.packing.size_width,
+          .contacts = prepared.choice.contacts};
+}
+
 OrderedJson spec_to_json(const Spec& spec) {
   OrderedJson object = fields_to_json(spec);
   if (spec.preparation.choice.is_lammps()) {

@@ -45,6 +45,9 @@ constexpr auto fields_of(std::type_identity<Spec>) {
 Spec read_spec(const std::filesystem::path& file);
 Spec spec_from_json(const Json& document, const std::string& name);
 
+/// What is known of its packings before they are made: number, width and contacts.
+PackingInfo packing_of(const Spec& spec);
+
 /// The effective spec, defaults and derived values included; reading it gives the same spec.
 OrderedJson spec_to_json(const Spec& spec);
 
