@@ -22,8 +22,7 @@ struct NewRuns {
   dem::Spec spec;                    ///< how their packings are prepared
   std::vector<std::uint64_t> seeds;  ///< of the packings; empty: PATH's, else as many as calibrated, following those
   std::filesystem::path store;       ///< folder that holds runs/
-  std::vector<std::uint64_t> fitted =
-      {};  ///< seeds of packings like the spec's that the law was fitted to, besides the spec's
+  std::vector<std::uint64_t> fitted = {};  ///< seeds besides the spec's, of packings of its size that the law knows
 };
 
 /// Runs of the path that are there.
