@@ -115,6 +115,7 @@ Fitted fitted(const Dataset& dataset, const fs::path& folder, const fit::Calibra
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
   all.modes.claims = claims_of(shown, law, all.modes.descriptions, options.steady_from);
+  set_aside_other_material(all.modes, tests);
   watch.end();
   all.paths = fitted_paths(law, shown, execution);
   return all;

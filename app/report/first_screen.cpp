@@ -91,13 +91,15 @@ Paragraph subject(const ReportInput& input) {
     fitted += test.role == Role::calibration ? 1 : 0;
   }
   const ValidRange& range = input.calibration.law.range;
+  const double width = input.tests.empty() ? 0 : input.tests.front().packing.size_width;
+  const std::string sizes = width > 0 ? fmt::format(" (largest over smallest radius {:g})", width) : "";
   const std::size_t packings = seeds_of(input.tests).size();
   std::string command = fact_of(input, "command", "dataset/dataset.json");
   if (command.empty()) command = fact_of(input, "command", "parameters.json");
-  return {notation(fmt::format("Calibrated from grains: {} {} of {} {}, {} tests fitted, {{ν}} = {:.3g} to "
+  return {notation(fmt::format("Calibrated from grains: {} {} of {} {}{}, {} tests fitted, {{ν}} = {:.3g} to "
                                "{:.3g}, deviatoric strain up to {:.3g}",
                                packings, packings == 1 ? "packing" : "packings", fmt::join(particles, " or "),
-                               kind_of_spheres(input), fitted, range.nu_min, range.nu_max, range.eps_dev_max)) +
+                               kind_of_spheres(input), sizes, fitted, range.nu_min, range.nu_max, range.eps_dev_max)) +
           plain(command.empty() ? "." : ", by " + command + ".")};
 }
 
@@ -283,7 +285,11 @@ std::vector<Reservation> reservations(const ReportInput& input, const std::vecto
                  "quality"});
   all.push_back(
       {2, "The form of the law, and what of it is fixed by decision, is in no interval of a parameter.", "parameters"});
-  all.push_back({1, "The published numbers are of other packings and another preparation.", "published"});
+  const std::string other = fit::other_than_the_papers(input.tests);
+  all.push_back({1,
+                 other.empty() ? "The published numbers are of other packings and another preparation."
+                               : fmt::format("The published numbers are of another material ({}).", other),
+                 "published"});
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.weight > b.weight; });
   return all;
 }

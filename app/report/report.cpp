@@ -169,8 +169,13 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
     return drawn(figure);
   };
   if (!modes.verdicts.empty()) {
+    const std::string differs = fit::other_than_the_papers(input.tests);
     add("published", "Beside the published numbers, mode by mode",
-        {text("Statements: " + agreement(modes.claims, [](auto&) { return true; }) +
+        {text((differs.empty() ? ""
+                               : fmt::format("The published numbers are of another material ({}): on none of "
+                                             "them is there a verdict. ",
+                                             differs)) +
+              "Statements: " + agreement(modes.claims, [](auto&) { return true; }) +
               ". Points of curves: " + agreement(modes.verdicts, [](auto& v) { return v.nu.has_value(); }) +
               ". Parameters: " + agreement(modes.verdicts, [](auto& v) { return !v.nu; }) +
               ". The rest is undecided, most of it because its error is wider than what matters, or an identity."),

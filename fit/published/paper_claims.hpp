@@ -19,7 +19,7 @@ struct Claim {
   double standard_error = 0;  ///< NaN where there is none
   double published = 0;       ///< NaN: only the sign is said, ours should be above zero
   std::string verdict;  ///< "agrees", "inconclusive", "differs", "undecided" (a sign within its error), "no error",
-                        ///< "identity" (exact kinematics, which no measurement could deny)
+                        ///< "identity" (exact kinematics, which no measurement could deny), "another material"
   double matters =
       std::numeric_limits<double>::quiet_NaN();  ///< difference that matters; NaN: of a sign or an identity
 };

@@ -115,4 +115,19 @@ std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Des
   return all;
 }
 
+std::string other_than_the_papers(const std::vector<TestRecord>& tests) {
+  PackingInfo paper;
+  paper.size_width = 3;
+  return tests.empty() ? "" : other_material(tests.front().packing, paper);
+}
+
+void set_aside_other_material(ModeComparison& modes, const std::vector<TestRecord>& tests) {
+  if (other_than_the_papers(tests).empty()) return;
+  for (Verdict& v : modes.verdicts) v.verdict = kAnotherMaterial;
+  for (Claim& claim : modes.claims) {
+    const bool is_number = claim.published > 0 && std::isfinite(claim.matters);
+    if (is_number) claim.verdict = kAnotherMaterial;
+  }
+}
+
 }  // namespace grainlaw::fit

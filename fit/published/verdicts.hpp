@@ -3,7 +3,8 @@
 // that they stand for, mode by mode. The difference is measured in standard errors of a difference between our mean over n
 // packings and one other packing, which is what the paper shows: SE sqrt(n + 1), under the assumption that the paper's
 // packing scatters like ours. Within the 95 % range of Student's t it "agrees" if that range is narrower than the difference
-// that matters, else it is "inconclusive": a wide range would agree with anything.
+// that matters, else it is "inconclusive": a wide range would agree with anything. Spheres of another material than the
+// paper's are not judged by its numbers.
 
 #include <optional>
 #include <string>
@@ -24,7 +25,7 @@ struct Verdict {
   double distance = 0;        ///< difference over SE sqrt(n + 1); NaN without an error
   double range = 0;           ///< half of the 95 % range of the difference; NaN without an error [-]
   double matters = 0;         ///< the difference that matters, difference_that_matters() [-]
-  std::string verdict;        ///< "agrees", "inconclusive", "differs", "no error", "not identified"
+  std::string verdict;        ///< "agrees", "inconclusive", "differs", "no error", "not identified", "another material"
 };
 constexpr auto fields_of(std::type_identity<Verdict>) {
   using V = Verdict;
@@ -57,5 +58,14 @@ double difference_that_matters(const std::string& quantity, std::optional<double
 /// Curves at .68 (where the rows reach it), .70, .74, .80 and .82; `packings` n is the number of seeds.
 std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions,
                                  std::size_t packings);
+
+/// The verdict on a number of the paper that is of another material than ours.
+inline constexpr const char* kAnotherMaterial = "another material";
+/// What sets the spheres of `tests`, all of one material, apart from the paper's (w = 3, Eq. (1)), as other_material() says
+/// it; empty: nothing known to.
+std::string other_than_the_papers(const std::vector<TestRecord>& tests);
+/// Where they are of another material, every verdict on a published number becomes kAnotherMaterial. Signs, equalities and
+/// identities among the claims stay: they compare ours with ours.
+void set_aside_other_material(ModeComparison& modes, const std::vector<TestRecord>& tests);
 
 }  // namespace grainlaw::fit

@@ -209,6 +209,27 @@ TEST_F(ReportFolder, WithoutPredictionsThePageSaysWhatIsMissing) {
   EXPECT_NE(page().find("No prediction can be made"), std::string::npos);
 }
 
+TEST_F(ReportFolder, SpheresOfAnotherMaterialStandBesideThePapersAsSuch) {
+  const std::string words = "The published numbers are of another material (size_width of its packing: 1, but 3)",
+                    beside = words + ": on none of them is there a verdict.", sizes = "(largest over smallest radius ";
+  chain::ReportInput scene = test::report_scene();
+  scene.calibration.law.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
+  fit::ModeComparison modes;
+  modes.verdicts = fit::verdicts_of(scene.calibration.law, {}, 2);
+  fit::write_calibration(dir_ / "calibration.json", scene.calibration, {}, modes, {{"version", "0.1.0"}});
+  std::string html = page();
+  EXPECT_NE(html.find("id=\"published\""), std::string::npos);
+  EXPECT_NE(html.find(sizes + "3)"), std::string::npos);
+  EXPECT_EQ(html.find(words), std::string::npos);
+  fs::remove_all(dir_ / "predictions");
+  for (TestRecord& test : scene.tests) test.packing.size_width = 1;
+  write_tests(dir_ / "dataset", scene.tests);
+  html = page();
+  EXPECT_NE(html.find(sizes + "1)"), std::string::npos);
+  EXPECT_NE(html.find(words + "."), std::string::npos) << "among the reasons for distrust";
+  EXPECT_NE(html.find(beside), std::string::npos) << "at the head of the section";
+}
+
 TEST_F(ReportFolder, TheDecisionComesBeforePredictionsAndTheseBeforeParameters) {
   const std::string html = page();
   std::size_t before = 0;

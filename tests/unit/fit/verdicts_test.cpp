@@ -95,6 +95,35 @@ TEST(Verdicts, AParameterOnItsBoundHasNoDistance) {
   EXPECT_EQ(v.verdict, "no error");
 }
 
+TEST(Verdicts, SpheresOfAnotherMaterialAreNotJudgedByThePapersNumbers) {
+  ModeComparison compared;
+  compared.verdicts = verdicts_of(published("", {"coordination"}).law, {}, 5);
+  const double none = std::nan("");
+  compared.claims = {{"Eq. 19", "a number", none, 0.2, 0.01, 0.137, "differs", 0.0137},
+                     {"Fig. 7", "a sign", none, 0.2, 0.01, none, "agrees"},
+                     {"Fig. 15", "the same", none, 0.2, 0.01, 0, "differs", 0.01},
+                     {"Table 1", "kinematics", none, 1.5, 0, 1.5, "identity"}};
+  std::vector<TestRecord> tests(1);
+  for (const double width : {0., 3.}) {  // of 0 nothing is known
+    tests[0].packing.size_width = width;
+    ModeComparison same = compared;
+    set_aside_other_material(same, tests);
+    EXPECT_EQ(find(same.verdicts, "ISO", "coordination.C1").verdict, "agrees") << width;
+    EXPECT_EQ(same.claims[0].verdict, "differs") << width;
+  }
+  std::vector<TestRecord> rough = tests, narrow = tests;
+  rough[0].packing.contacts.friction = 0.1;
+  narrow[0].packing.size_width = 1;
+  for (const std::vector<TestRecord>& others : {rough, narrow}) {
+    ModeComparison set_aside = compared;
+    set_aside_other_material(set_aside, others);
+    for (const Verdict& v : set_aside.verdicts) EXPECT_EQ(v.verdict, "another material") << v.quantity;
+    std::vector<std::string> claims;
+    for (const Claim& claim : set_aside.claims) claims.push_back(claim.verdict);
+    EXPECT_EQ(claims, (std::vector<std::string>{"another material", "agrees", "differs", "identity"}));
+  }
+}
+
 TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
   const std::vector<Description> modes{
       {"UNI", published("UNI", {"coordination", "rattlers", "pressure"}, 1e-5)},
