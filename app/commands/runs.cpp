@@ -8,6 +8,7 @@
 #include "app/commands/options.hpp"
 #include "app/terminal/run_list_text.hpp"
 #include "chain/calibration.hpp"
+#include "chain/rehearsals.hpp"
 #include "dem/runs/task_list.hpp"
 
 namespace grainlaw::app {
@@ -22,6 +23,7 @@ struct RunsOptions {
 ExitCode runs(const RunsOptions& options, Session& session) {
   const chain::CalibrationInput input = chain::read_calibration_input(options.spec, {});
   const std::vector<dem::PlannedTest> tests = plan(*input.spec);
+  if (options.tasks > 0) chain::require_rehearsals_of(dem::packing_of(*input.spec), options.output / "dataset");
   RunListing listing = listing_of(dem::listed(dem::runs_of(tests)), options.output);
   if (options.tasks > 0) listing.missing = dem::write_tasks(*input.spec, options.tasks, options.output, session).runs;
   print_result(session.json ? json_text(to_json(listing)) : text_of(listing, options.output));

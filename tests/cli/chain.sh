@@ -122,10 +122,14 @@ code=0
 # nor by one of another material, which a changed SPEC would leave in the folder: refused before anything runs
 jq '.size_width = 2' out/spec.resolved.json >narrow.json
 cp -r rehearsed before
-code=0
-"$grainlaw" calibrate narrow.json -o rehearsed --quiet >/dev/null 2>err || code=$?
-[[ $code == 2 ]] && grep -q 'rehearsals/uni: test UNI-0.72-s3: size_width of its packing: 3, but 2 in SPEC' err && diff -r before rehearsed ||
-  fail "a rehearsal of another material: $(cat err)"
+for command in "calibrate narrow.json --quiet" "calibrate narrow.json --dry-run" "calibrate narrow.json --target-error 0.1 --for other.json" \
+  "runs narrow.json --array 2"; do
+  code=0
+  # shellcheck disable=SC2086 # words
+  "$grainlaw" $command -o rehearsed >/dev/null 2>err || code=$?
+  [[ $code == 2 ]] && grep -q 'rehearsals/uni: test UNI-0.72-s3: size_width of its packing: 3, but 2 in SPEC' err && diff -r before rehearsed ||
+    fail "$command, a rehearsal of another material: $(cat err)"
+done
 "$grainlaw" predict refitted/parameters.json other.json -o refitted/predictions/other --dem --seeds 3 --spec out/spec.resolved.json --store out --rehearse >/dev/null 2>log ||
   fail "--dem --rehearse: $(cat log)"
 "$grainlaw" study bands refitted -o bands >text || fail "study bands"
