@@ -62,8 +62,10 @@ class Archive {
 
  private:
   [[noreturn]] void refuse(const std::string& reason) const {
-    throw InvalidInput(fmt::format("{}: is no sound archive of numpy (.npz): {}; write it anew with numpy.savez", name_,
-                                   one_line(reason, 100)));
+    throw InvalidInput(fmt::format(
+        "{}: is no sound archive of numpy (.npz): {}; write it anew with numpy.savez, or save the sheet of a "
+        "workbook (.xlsx, .ods) as CSV",
+        name_, one_line(reason, 100)));
   }
 
   Member read(zip_uint64_t index, std::size_t most) const {

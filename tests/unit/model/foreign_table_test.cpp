@@ -206,6 +206,13 @@ TEST(Npz, RefusesWhatIsDamaged) {
   };
   EXPECT_NE(why(archive(), "syy").find("holds no array 'syy'"), std::string::npos);
   EXPECT_NE(why(archive(), "note").find("type '<U5'"), std::string::npos);
+  std::string workbook = archive();
+  for (std::size_t at = 0; (at = workbook.find("step.npy", at)) != std::string::npos;)
+    workbook.replace(at, 8, "a/1b.xml");
+  EXPECT_NE(why(workbook).find("'a/1b.xml' is no .npy; write it anew with numpy.savez, or save the sheet of a workbook "
+                               "(.xlsx, .ods) as CSV"),
+            std::string::npos)
+      << why(workbook);
   const std::string sound = archive();
   for (std::size_t n = 0; n < sound.size(); n += 7) EXPECT_NE(why(sound.substr(0, n)), "accepted") << n;
   std::string flipped = sound;
