@@ -139,13 +139,15 @@ StageDefinition pressure_stage(const StateLawName& of, const std::vector<Density
     nu_c = std::min(nu_c, highest);
   };
   stage.blocks = [of, series](const LawParameters<double>& law) {
+    const double start = (law.*of.law).pressure.nu_c;
+    const auto measured = [start](const DensityPoint& p) { return start * p.P_star / (p.nu * p.C()); };
     return blocks_of<Jet3>(
         series, "P_scaled", 3,
-        [](const DensityPoint& p, const auto* x) {
+        [start, measured](const DensityPoint& p, const auto* x) {
           using T = std::decay_t<decltype(*x)>;
-          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) - x[2] * (p.P_star / (p.nu * p.C()));
+          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) * (start / x[2]) - measured(p);
         },
-        [nu_c = (law.*of.law).pressure.nu_c](const DensityPoint& p) { return nu_c * p.P_star / (p.nu * p.C()); });
+        measured);
   };
   stage.judge = require_densities(series, 3);
   return stage;
@@ -164,15 +166,18 @@ StageDefinition pressure_of_assumed_contacts(const StateLawName& of, const std::
       const Rattlers<double>& r = assumed.rattlers;
       return StateLaw<T>{{T(c.C1), T(c.alpha), nu_c}, {T(r.phi_c), T(r.phi_v)}, {}}.C(nu);
     };
+    const double start = (law.*of.law).pressure.nu_c;
+    const auto measured = [C_of, start](const DensityPoint& p) {
+      return start * p.P_star / (p.nu * C_of(start, p.nu));
+    };
     return blocks_of<Jet3>(
         series, "P_scaled", 3,
-        [C_of](const DensityPoint& p, const auto* x) {
+        [C_of, start, measured](const DensityPoint& p, const auto* x) {
           using T = std::decay_t<decltype(*x)>;
-          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) - x[2] * (p.P_star / (p.nu * C_of(x[2], p.nu)));
+          const T scale = start * C_of(x[2], p.nu) / (x[2] * C_of(start, p.nu));
+          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) * scale - measured(p);
         },
-        [C_of, nu_c = (law.*of.law).pressure.nu_c](const DensityPoint& p) {
-          return nu_c * p.P_star / (p.nu * C_of(nu_c, p.nu));
-        });
+        measured);
   };
   return stage;
 }

@@ -3,8 +3,9 @@
 //   Eq. (11): C* rows, unweighted, C0 = 6 fixed
 //   Eq. (12): phi_r rows, unweighted, nu_c that of Eq. (11)
 //   Eq. (14): as Eq. (15) like the paper does, P* nu_c/(nu C) against p0 x (1 - gamma_p x), x = ln(nu/nu_c), with the
-//             measured C = (1 - phi_r) C*: the pressure's parameters then carry no misfit of Eqs. (11) and (12). nu_c
-//             stands on both sides. Unweighted, so that no row near jamming outweighs the branch.
+//             measured C = (1 - phi_r) C*: the pressure's parameters then carry no misfit of Eqs. (11) and (12). Both sides are
+//             over the nu_c of P*, times the start's: were the data multiplied by what is fitted, a smaller nu_c would shrink all
+//             misfits and win by it. Unweighted, so that no row near jamming outweighs the branch.
 //   Eq. (13): <delta>_c/<r> = D ln(nu/nu_c), nu_c that of Eq. (14)
 // nu_c ends at the latest kNearestJamming below the lowest density of the data, where Eq. (11) has its infinite slope.
 
