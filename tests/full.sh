@@ -8,9 +8,9 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 # Each stage and its minutes on two cores, compiler cache empty, where no run has said it here.
-stages=(release 17  long 25  clang 30  sources 20  assertions 35  asan-ubsan 60  tsan 110  valgrind 60  fuzz 32
-        pipeline 20  engine 15  ground 60  truth 15  trust 330  own_data 15  page 30  cluster 30  house 25  calibration 55
-        law 150)
+stages=(release 17  long 120 clang 30  sources 20  assertions 35  asan-ubsan 60  tsan 110  valgrind 60  fuzz 32
+        faults 65  kills 12  mutants 240  trust 20  pipeline 20  engine 15  ground 60  truth 15  own_data 15  page 30
+        cluster 30  house 25  calibration 55  law 150)
 folder=build/full
 export UBSAN_OPTIONS=print_stacktrace=1
 jobs=$(nproc)
@@ -36,6 +36,8 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
     sources) build sources ;;
     valgrind) build assertions; tests/valgrind.sh ;;
     fuzz) build release "${options[@]}"; tests/fuzz/run.sh --seconds 60 --grainlaw build/release/bin/grainlaw ;;
+    faults | kills | mutants) bash tests/acceptance/trust.sh "$1" ;;  # apart, so that a stop costs less
+    trust) bash tests/acceptance/trust.sh finds digits stress conserved time_line suites ;;
     *) bash "tests/acceptance/$1.sh" ;;
   esac
 }
