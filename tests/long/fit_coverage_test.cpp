@@ -41,12 +41,14 @@ TEST(CoverageOfPackingsThatDiffer, IsOfWhatManyOfThemGive) {
     EXPECT_LE(std::abs(count.distance()), 4 * std::sqrt(1. / study.sets + study.packings / 640.)) << parameter;
 }
 
-// Moderated (docs/theory/fit.md): from two packings on, both losses, over several priors.
+// Moderated (docs/theory/fit.md): from two packings on, both losses, over several priors. Of ten packings 1000 sets: 300 left lambda
+// at 89.3 %, which they know to 1.8; laws over density 8000, as 2000 left nu_c at 92.8 of 93. Both were decided on before more
+// were seen.
 class CoverageModerated : public Coverage {};
 
 TEST_P(CoverageModerated, IsotropicLaws) {
   CoverageStudy study = GetParam();
-  study.sets = 2000;
+  study.sets = 8000;
   study.priors = 40;
   const testing::Coverage coverage = testing::coverage_of_isotropic_laws(study);
   testing::coverage_table("moderated.isotropic." + study.name(), coverage);
@@ -70,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Studies, CoverageModerated,
                          ::testing::Values(CoverageStudy{300, 2, 0.9, 0.02, 1000000, fit::Loss::squares, 10, 1300000},
                                            CoverageStudy{300, 3, 0.9, 0.02, 1100000, fit::Loss::squares, 10, 1300000},
                                            CoverageStudy{300, 5, 0.9, 0.02, 1200000, fit::Loss::squares, 10, 1300000},
-                                           CoverageStudy{300, 10, 0.9, 0.02, 1300000, fit::Loss::squares, 10, 1300000},
+                                           CoverageStudy{1000, 10, 0.9, 0.02, 1300000, fit::Loss::squares, 10, 1300000},
                                            CoverageStudy{300, 2, 0.9, 0.02, 1400000, fit::Loss::huber, 10, 1700000},
                                            CoverageStudy{300, 3, 0.9, 0.02, 1500000, fit::Loss::huber, 10, 1700000},
                                            CoverageStudy{300, 5, 0.9, 0.02, 1600000, fit::Loss::huber, 10, 1700000},
