@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "chain/planning/planned_spec.hpp"
+#include "chain/rehearsals.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -80,6 +81,12 @@ Forecast forecast_of(const std::vector<dem::PlannedTest>& tests, bool fitted, co
   return forecast;
 }
 
+/// Of a calibration, which is refused where it would be.
+Forecast forecast_of(const dem::Spec& spec, const fs::path& output, const Execution& execution) {
+  require_rehearsals_of(packing_of(spec), output / "dataset");
+  return forecast_of(plan(spec), true, spec.preparation, output, execution);
+}
+
 void note_beyond(const PathTraits& path, const ValidRange& range, std::vector<std::string>& notes) {
   constexpr double kSlack = 1e-6;
   const auto note = [&](const char* what, double value, double limit) {
@@ -94,9 +101,7 @@ void note_beyond(const PathTraits& path, const ValidRange& range, std::vector<st
 }  // namespace
 
 Forecast forecast(const CalibrationInput& input, const fs::path& output, const Execution& execution) {
-  if (!input.dataset) {
-    return forecast_of(plan(*input.spec), true, input.spec->preparation, output, execution);
-  }
+  if (!input.dataset) return forecast_of(*input.spec, output, execution);
   double rows = 0, bytes = 0;
   std::vector<const Path*> paths;
   for (const DatasetTest& test : input.dataset->tests) {
@@ -114,7 +119,7 @@ Forecast forecast(const CalibrationInput& input, const fs::path& output, const E
 Forecast forecast_of_pilot(const PrecisionTarget& target, const dem::Spec& frame, const fs::path& output,
                            const Execution& execution) {
   const dem::Spec pilot = rounds_of(planned_spec(frame, pilot_settings(frame), target.path));
-  Forecast forecast = forecast_of(plan(pilot), true, pilot.preparation, output, execution);
+  Forecast forecast = forecast_of(pilot, output, execution);
   forecast.notes.emplace_back("this is the pilot alone; what the plan takes follows from what it shows");
   return forecast;
 }

@@ -6,7 +6,6 @@
 #include "app/terminal/forecast_text.hpp"
 #include "app/terminal/result_text.hpp"
 #include "chain/planning/target_calibration.hpp"
-#include "chain/rehearsals.hpp"
 #include "fit/prior_file.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -55,7 +54,6 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
   if (options.wait && (options.target_error || !options.dataset.empty()))
     throw InvalidInput("calibrate: --wait waits for the runs of SPEC; leave --target-error and --dataset out");
   const chain::CalibrationInput input = chain::read_calibration_input(options.spec, options.dataset);
-  if (!input.dataset) chain::require_rehearsals_of(dem::packing_of(*input.spec), options.output / "dataset");
   fit::CalibrationOptions fit_options = chain::fit_options_of(input, session);
   fit_options.loss = options.loss;
   fit_options.starts = options.starts;

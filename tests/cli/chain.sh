@@ -123,7 +123,7 @@ code=0
 jq '.size_width = 2' out/spec.resolved.json >narrow.json
 cp -r rehearsed before
 for command in "calibrate narrow.json --quiet" "calibrate narrow.json --dry-run" "calibrate narrow.json --target-error 0.1 --for other.json" \
-  "runs narrow.json --array 2"; do
+  "calibrate narrow.json --target-error 0.1 --for other.json --dry-run" "runs narrow.json --array 2"; do
   code=0
   # shellcheck disable=SC2086 # words
   "$grainlaw" $command -o rehearsed >/dev/null 2>err || code=$?
