@@ -178,7 +178,9 @@ Page make_page(const chain::ReportInput& input, const chain::ReportInput* other,
               "Statements: " + agreement(modes.claims, [](auto&) { return true; }) +
               ". Points of curves: " + agreement(modes.verdicts, [](auto& v) { return v.nu.has_value(); }) +
               ". Parameters: " + agreement(modes.verdicts, [](auto& v) { return !v.nu; }) +
-              ". The rest is undecided, most of it because its error is wider than what matters, or an identity."),
+              (differs.empty()
+                   ? ". The rest is undecided, most of it because its error is wider than what matters, or an identity."
+                   : ". The rest is a number of the paper's, undecided, or an identity.")),
          open(jamming_table(modes.verdicts)), folded("Statements: which agree", claim_table(modes.claims)),
          folded("Curves: which agree", verdict_table(modes.verdicts, false)),
          folded("Parameters: which agree", verdict_table(modes.verdicts, true))});

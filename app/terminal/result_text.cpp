@@ -9,6 +9,7 @@
 
 #include "app/report/report.hpp"
 #include "app/terminal/help.hpp"
+#include "fit/published/verdicts.hpp"
 #include "model/files/fields_json.hpp"
 
 namespace grainlaw::app {
@@ -104,8 +105,10 @@ std::string text_of(const dem::SimulationResult& simulation, const fs::path& out
 }
 
 std::string text_of(const chain::CalibrationResult& result, const fs::path& output, const Session& session) {
-  return fmt::format("{}\n{} runs ({} found finished), {} tests, {:.1f} s, {:.0f} MB\n{}\n", summary_table(output),
-                     result.counts.runs, result.counts.found, result.dataset.tests.size(), session.stopwatch.seconds(),
+  const std::string other = fit::other_than_the_papers(tests_of(result.dataset, Role::calibration));
+  return fmt::format("{}{}\n{} runs ({} found finished), {} tests, {:.1f} s, {:.0f} MB\n{}\n", summary_table(output),
+                     other.empty() ? "" : paragraph("published", "of another material: " + other), result.counts.runs,
+                     result.counts.found, result.dataset.tests.size(), session.stopwatch.seconds(),
                      peak_memory_megabytes(), (output / "parameters.json").string());
 }
 

@@ -130,6 +130,12 @@ for command in "calibrate narrow.json --quiet" "calibrate narrow.json --dry-run"
   [[ $code == 2 ]] && grep -q 'rehearsals/uni: test UNI-0.72-s3: size_width of its packing: 3, but 2 in SPEC' err && diff -r before rehearsed ||
     fail "$command, a rehearsal of another material: $(cat err)"
 done
+# spheres of one size stand beside the paper's numbers as such
+cp -r out/dataset one-size
+jq '(.. | objects | select(has("size_width")).size_width) = 1 | del(.digest)' out/dataset/dataset.json >one-size/dataset.json
+for each in out one-size; do "$grainlaw" calibrate --dataset $each -o beside --quiet >$each.text || fail "$each"; done
+grep -q '^published of another material: size_width of its packing: 1, but 3' one-size.text || fail "$(tail -4 one-size.text)"
+! grep -q '^published of' out.text || fail "$(tail -4 out.text)"
 "$grainlaw" predict refitted/parameters.json other.json -o refitted/predictions/other --dem --seeds 3 --spec out/spec.resolved.json --store out --rehearse >/dev/null 2>log ||
   fail "--dem --rehearse: $(cat log)"
 "$grainlaw" study bands refitted -o bands >text || fail "study bands"

@@ -211,7 +211,8 @@ TEST_F(ReportFolder, WithoutPredictionsThePageSaysWhatIsMissing) {
 
 TEST_F(ReportFolder, SpheresOfAnotherMaterialStandBesideThePapersAsSuch) {
   const std::string words = "The published numbers are of another material (size_width of its packing: 1, but 3)",
-                    beside = words + ": on none of them is there a verdict.", sizes = "(largest over smallest radius ";
+                    beside = words + ": on none of them is there a verdict.", sizes = "(largest over smallest radius ",
+                    rest = "most of it because its error is wider";
   chain::ReportInput scene = test::report_scene();
   scene.calibration.law.covariance = Eigen::MatrixXd::Zero(kParameterCount, kParameterCount);
   fit::ModeComparison modes;
@@ -221,6 +222,7 @@ TEST_F(ReportFolder, SpheresOfAnotherMaterialStandBesideThePapersAsSuch) {
   EXPECT_NE(html.find("id=\"published\""), std::string::npos);
   EXPECT_NE(html.find(sizes + "3)"), std::string::npos);
   EXPECT_EQ(html.find(words), std::string::npos);
+  EXPECT_NE(html.find(rest), std::string::npos);
   fs::remove_all(dir_ / "predictions");
   for (TestRecord& test : scene.tests) test.packing.size_width = 1;
   write_tests(dir_ / "dataset", scene.tests);
@@ -228,6 +230,7 @@ TEST_F(ReportFolder, SpheresOfAnotherMaterialStandBesideThePapersAsSuch) {
   EXPECT_NE(html.find(sizes + "1)"), std::string::npos);
   EXPECT_NE(html.find(words + "."), std::string::npos) << "among the reasons for distrust";
   EXPECT_NE(html.find(beside), std::string::npos) << "at the head of the section";
+  EXPECT_EQ(html.find(rest), std::string::npos) << "what has no verdict has it for another reason";
 }
 
 TEST_F(ReportFolder, TheDecisionComesBeforePredictionsAndTheseBeforeParameters) {
