@@ -18,22 +18,8 @@ struct DensityValue {
   std::string test;
   int cluster;
   double nu, Q;
-  double weight = 0;
+  double weight = 1;
 };
-
-std::vector<DensityValue> values_of(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
-                                    const std::vector<int>& cluster) {
-  std::vector<DensityValue> values;
-  for (std::size_t i = 0; i < shear.size(); ++i) {
-    const Estimate& estimate = shear[i].*quantity.estimate;
-    if (estimate.status == Status::fitted || estimate.status == Status::at_bound)
-      values.push_back({shear[i].test, cluster[i], shear[i].nu, estimate.value});
-  }
-  double mean = 0;
-  for (const DensityValue& v : values) mean += std::abs(v.Q) / static_cast<double>(values.size());
-  for (DensityValue& v : values) v.weight = 1 / std::max({std::abs(v.Q), 0.2 * mean, 1e-12});
-  return values;
-}
 
 ExponentialLaw<double> best_start(const std::vector<DensityValue>& values, const std::string& law, double nu_c) {
   const auto n = static_cast<Eigen::Index>(values.size());
@@ -58,6 +44,24 @@ ExponentialLaw<double> best_start(const std::vector<DensityValue>& values, const
     }
   }
   return best;
+}
+
+/// Relative to what a law through all of them gives at their density: relative to themselves, small ones would count for more
+/// because they came out small, and the law too low by twice their relative variance.
+std::vector<DensityValue> values_of(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
+                                    const std::vector<int>& cluster, double nu_c) {
+  std::vector<DensityValue> values;
+  for (std::size_t i = 0; i < shear.size(); ++i) {
+    const Estimate& estimate = shear[i].*quantity.estimate;
+    if (estimate.status == Status::fitted || estimate.status == Status::at_bound)
+      values.push_back({shear[i].test, cluster[i], shear[i].nu, estimate.value});
+  }
+  if (values.empty()) return values;
+  double mean = 0;
+  for (const DensityValue& v : values) mean += std::abs(v.Q) / static_cast<double>(values.size());
+  const ExponentialLaw<double> through = best_start(values, quantity.name, nu_c);
+  for (DensityValue& v : values) v.weight = 1 / std::max({std::abs(through.value(v.nu, nu_c)), 0.2 * mean, 1e-12});
+  return values;
 }
 
 std::vector<ResidualBlock> value_blocks(const std::vector<DensityValue>& values, const std::string& law, double nu_c) {
@@ -101,7 +105,7 @@ void settle_constant_law(StageFit& fit, const std::string& law) {
 StageDefinition density_law_stage(const ShearQuantity& quantity, const std::vector<ShearFit>& shear,
                                   const std::vector<int>& cluster, double nu_c, const CalibrationOptions& options) {
   const std::string name = quantity.name;
-  const std::vector<DensityValue> values = values_of(quantity, shear, cluster);
+  const std::vector<DensityValue> values = values_of(quantity, shear, cluster, nu_c);
   std::vector<double> nu;
   for (const DensityValue& v : values) nu.push_back(v.nu);
   const int found = distinct_densities(nu);
@@ -117,7 +121,7 @@ StageDefinition density_law_stage(const ShearQuantity& quantity, const std::vect
 
   StageDefinition stage;
   stage.name = name;
-  stage.window = fmt::format("values of the stage shear, relative, nu_c = {:g} fixed", nu_c);
+  stage.window = fmt::format("values of the stage shear, relative to a curve through them, nu_c = {:g} fixed", nu_c);
   stage.free = parameters_of(name);
   stage.remedy = remedy;
   stage.start = [=](LawParameters<double>& law) { law.*quantity.law = best_start(values, name, nu_c); };

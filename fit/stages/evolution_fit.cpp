@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "fit/stages/evolution_checks.hpp"
 #include "fit/stages/trajectory_misfit.hpp"
@@ -12,14 +13,41 @@
 namespace grainlaw::fit {
 namespace {
 
+constexpr double kSamePlace = 1e-9;       // of path parameters, whose volume fractions agree but for rounding
 constexpr double kVolumetricPath = 1e-3;  // |d eps_vol| of a trajectory that says something about the coupling
 
 std::string quantity_name(char symbol, std::size_t axis) {
   return axis == 0 ? std::string(1, symbol) + "_par" : std::string(1, symbol) + "_axis" + std::to_string(axis + 1);
 }
 
-ResidualBlock evolution_block(const Trajectory& t, const LawParameters<double>& fixed,
-                              const std::vector<std::size_t>& index, const CalibrationOptions& options) {
+/// P* of `t` at path parameter e, between its rows; none beyond them.
+std::optional<double> pressure_at(const Trajectory& t, double e) {
+  const auto after = std::ranges::lower_bound(t.rows, e - kSamePlace, {}, &TrajectoryRow::e);
+  if (after == t.rows.end()) return std::nullopt;
+  if (after->e <= e + kSamePlace) return after->data.P;
+  if (after == t.rows.begin()) return std::nullopt;
+  const TrajectoryRow& before = *std::prev(after);
+  return std::lerp(before.data.P, after->data.P, (e - before.e) / (after->e - before.e));
+}
+
+/// Mean P* of isotropic tests at the volume fraction of a row of one of them. Weights by each row's own P* would be larger
+/// where its packing or noise makes it small, and the law too low, by twice the variance of ln P*.
+double mean_pressure(const std::vector<Trajectory>& all, const Trajectory& own, const TrajectoryRow& row) {
+  double sum = row.data.P;
+  int passed = 1;
+  for (const Trajectory& t : all) {
+    if (&t == &own || !t.starts_on_law) continue;
+    const auto P = pressure_at(t, std::log(own.nu(row.e) / t.nu_start) / t.direction.dx);
+    if (!P) continue;
+    sum += *P;
+    ++passed;
+  }
+  return sum / passed;
+}
+
+ResidualBlock evolution_block(const std::vector<Trajectory>& all, const Trajectory& t,
+                              const LawParameters<double>& fixed, const std::vector<std::size_t>& index,
+                              const CalibrationOptions& options) {
   const auto rows = static_cast<Eigen::Index>(t.rows.size());
   const auto axes = static_cast<Eigen::Index>(t.axes.size());
   ResidualBlock block;
@@ -38,7 +66,7 @@ ResidualBlock evolution_block(const Trajectory& t, const LawParameters<double>& 
   add(
       "P_star", 0, [](const LawState<double>& y) { return y.P; },
       [&](const TrajectoryRow& row) {
-        return t.starts_on_law ? row.weight / (options.pressure_scale * row.data.P) : 0.0;
+        return t.starts_on_law ? row.weight / (options.pressure_scale * mean_pressure(all, t, row)) : 0.0;
       });
   for (Eigen::Index a = 0; a < axes; ++a) {
     const Deviator<double>& n = t.axes[static_cast<std::size_t>(a)];
@@ -66,7 +94,8 @@ struct RatioOfTest {
 std::string evolution_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories, each segment from its measured start: P* of ISO unloading (nu >= {:g}, start on Eq. (14)) "
-      "relative, scale {:g}; s_par scale {:g} and F_par scale {:g} in shear, at constant volume 0 < eps_dev <= {:g} "
+      "relative to the mean of the tests, scale {:g}; s_par scale {:g} and F_par scale {:g} in shear, at constant "
+      "volume 0 < eps_dev <= {:g} "
       "and, with {:g} times the weight, eps_dev >= {:g}, elsewhere all rows; P* in shear is shown without weight "
       "because Eq. (16) has no dilatancy",
       options.iso_nu_min, options.pressure_scale, options.stress_scale, options.fabric_scale, options.rate_window,
@@ -97,7 +126,7 @@ std::vector<ResidualBlock> evolution_blocks(const std::vector<Trajectory>& traje
   std::vector<std::size_t> index;
   for (const std::string& name : free) index.push_back(parameter_index(name));
   std::vector<ResidualBlock> blocks;
-  for (const Trajectory& t : trajectories) blocks.push_back(evolution_block(t, law, index, options));
+  for (const Trajectory& t : trajectories) blocks.push_back(evolution_block(trajectories, t, law, index, options));
   return blocks;
 }
 
