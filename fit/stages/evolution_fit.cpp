@@ -84,11 +84,11 @@ ResidualBlock evolution_block(const std::vector<Trajectory>& all, const Trajecto
   return block;
 }
 
-/// sigma_N/(B F_N) of a test's steady rows.
+/// sigma_N/(B F_N) of a test's steady rows, as one of sums: the fabric of a row may be none by chance.
 struct RatioOfTest {
-  int packing = 0, rows = 0;
-  double sum = 0;
-  double mean() const { return sum / rows; }
+  int packing = 0;
+  double sigma = 0, B_F = 0;
+  double value() const { return sigma / B_F; }
 };
 
 std::string evolution_window(const CalibrationOptions& options) {
@@ -171,23 +171,23 @@ TiedCoupling tied_a1(const std::vector<Trajectory>& trajectories, const LawParam
     if (t.direction.de == 0 || std::abs(t.direction.dx) > 1e-12) continue;
     const double B = law.isotropic.B_star(t.nu_start);
     for (const TrajectoryRow& row : t.rows) {
-      const double F = row.data.F.dot(t.direction.N);
-      if (t.direction.de * row.e < options.steady_from || !(F > 0)) continue;
+      if (t.direction.de * row.e < options.steady_from) continue;
       RatioOfTest& ratio = ratios[t.test];
       ratio.packing = t.cluster;
-      ratio.sum += row.data.sigma.dot(t.direction.N) / (B * F);
-      ++ratio.rows;
+      ratio.sigma += row.data.sigma.dot(t.direction.N);
+      ratio.B_F += B * row.data.F.dot(t.direction.N);
     }
   }
+  std::erase_if(ratios, [](const auto& test) { return !(test.second.B_F > 0); });
   if (ratios.empty()) {
     a1.note = "no steady shear to refer it to; shear to eps_dev >= " + fmt::format("{:g}", options.steady_from);
     return tied;
   }
   const double n = static_cast<double>(ratios.size());
   double mean = 0;
-  for (const auto& [test, ratio] : ratios) mean += ratio.mean() / n;
+  for (const auto& [test, ratio] : ratios) mean += ratio.value() / n;
   std::map<int, double> off;  // of the mean, by what each packing added to it
-  for (const auto& [test, ratio] : ratios) off[ratio.packing] += (ratio.mean() - mean) / n;
+  for (const auto& [test, ratio] : ratios) off[ratio.packing] += (ratio.value() - mean) / n;
   a1.value = 2. / 3 * (a2.value - mean);
   a1.status = Status::tied;
   a1.note = fmt::format("mean of A1/(B F) over steady shear of {} tests, A1 = (2/3)(A2 - sigma_dev)", ratios.size());
