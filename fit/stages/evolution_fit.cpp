@@ -20,13 +20,12 @@ std::string quantity_name(char symbol, std::size_t axis) {
   return axis == 0 ? std::string(1, symbol) + "_par" : std::string(1, symbol) + "_axis" + std::to_string(axis + 1);
 }
 
-/// P* of `t` at path parameter e, between its rows; none beyond them.
+/// P* of `t` at path parameter e, between its start and its rows; none beyond them.
 std::optional<double> pressure_at(const Trajectory& t, double e) {
   const auto after = std::ranges::lower_bound(t.rows, e - kSamePlace, {}, &TrajectoryRow::e);
-  if (after == t.rows.end()) return std::nullopt;
+  if (after == t.rows.end() || e < 0) return std::nullopt;
   if (after->e <= e + kSamePlace) return after->data.P;
-  if (after == t.rows.begin()) return std::nullopt;
-  const TrajectoryRow& before = *std::prev(after);
+  const TrajectoryRow before = after == t.rows.begin() ? TrajectoryRow{0, t.start} : *std::prev(after);
   return std::lerp(before.data.P, after->data.P, (e - before.e) / (after->e - before.e));
 }
 

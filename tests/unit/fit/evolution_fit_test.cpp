@@ -107,6 +107,42 @@ TEST(EvolutionFit, PressureInShearIsShownAndNotFitted) {
   }
 }
 
+// Packings whose P* is 30 % more and less than the law's, one of which begins later and has other rows: where both are, rows weigh
+// by the mean, which is the law's; where one is, by its own.
+TEST(EvolutionFit, PressureWeighsByTheMeanOfPackings) {
+  testing::SyntheticOptions options = small();
+  options.rows = 200;
+  testing::SyntheticDataset from_82(kTruth, options);
+  options.rows = 137;
+  options.nu_max = 0.80;
+  testing::SyntheticDataset from_80(kTruth, options);
+  std::vector<TestRecord> tests{from_82.isotropic_unloading(1), from_80.isotropic_unloading(2)};
+  double factor = 1.3;
+  for (TestRecord& test : tests) {
+    for (Observation& row : test.rows) row.P_star *= factor, row.stress.tensor *= factor;
+    factor = 0.7;
+  }
+  tests.push_back(from_82.test("d2", 1, 0.74, {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.1)}));
+  const auto all = trajectories(tests);
+  const Problem problem = evolution_problem(all);
+  int alone = 0, together = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (!all[k].starts_on_law) continue;
+    for (std::size_t i = 0; i < all[k].rows.size(); ++i) {
+      const TrajectoryRow& row = all[k].rows[i];
+      const double nu = all[k].nu(row.e), law = kTruth.isotropic.P_star(nu);
+      const double weighs_by = row.weight / (problem.blocks[k].weight[static_cast<Eigen::Index>(i)] *
+                                             CalibrationOptions{}.pressure_scale * law);
+      const bool one = nu > 0.7999 || (k == 0 && i + 2 > all[k].rows.size());
+      if (!one) EXPECT_NEAR(weighs_by, 1, 2e-3) << nu;
+      if (nu > 0.8001) EXPECT_NEAR(weighs_by, 1.3, 1e-12) << nu;
+      alone += nu > 0.8001 ? 1 : 0, together += one ? 0 : 1;
+    }
+  }
+  EXPECT_GT(alone, 10);
+  EXPECT_GT(together, 150);
+}
+
 TEST(EvolutionFit, DilatancyDoesNotCorruptStressAndFabric) {
   // P rises by 40 % at .68 while s and F stay as Eq. (16) has them. That is no law any more, since A1 of Eq. (16) changes
   // P and with it s by about a percent; s_max, beta_s, F_max, beta_F and a2 must be found to this.
