@@ -13,20 +13,20 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kSamePlace = 1e-9;       // of path parameters, whose volume fractions agree but for rounding
 constexpr double kVolumetricPath = 1e-3;  // |d eps_vol| of a trajectory that says something about the coupling
 
 std::string quantity_name(char symbol, std::size_t axis) {
   return axis == 0 ? std::string(1, symbol) + "_par" : std::string(1, symbol) + "_axis" + std::to_string(axis + 1);
 }
 
-/// P* of `t` at path parameter e, between its start and its rows; none beyond them.
+/// P* of `t` at path parameter e, between its start and its last row and as far beyond as the next row would be.
 std::optional<double> pressure_at(const Trajectory& t, double e) {
-  const auto after = std::ranges::lower_bound(t.rows, e - kSamePlace, {}, &TrajectoryRow::e);
-  if (after == t.rows.end() || e < 0) return std::nullopt;
-  if (after->e <= e + kSamePlace) return after->data.P;
+  if (t.rows.empty()) return std::nullopt;
+  auto after = std::ranges::lower_bound(t.rows, e, {}, &TrajectoryRow::e);
+  if (after == t.rows.end()) --after;
   const TrajectoryRow before = after == t.rows.begin() ? TrajectoryRow{0, t.start} : *std::prev(after);
-  return std::lerp(before.data.P, after->data.P, (e - before.e) / (after->e - before.e));
+  const double share = (e - before.e) / (after->e - before.e), P = std::lerp(before.data.P, after->data.P, share);
+  return share > -1 && share < 2 && P > 0 ? std::optional(P) : std::nullopt;
 }
 
 /// Mean P* of isotropic tests at the volume fraction of a row of one of them. Weights by each row's own P* would be larger

@@ -77,14 +77,18 @@ TEST(MeanOverSets, OfThePressureAlongUnloadingIsWhatWasPutIn) {
   const std::vector<std::string> held{"stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate"};
   testing::SyntheticOptions few_rows;
   few_rows.rows = 12;
-  testing::SyntheticDataset maker(truth, few_rows);
+  std::vector<testing::SyntheticDataset> makers;  // which others' rows are never quite at the same places
+  for (int packing = 0; packing < 10; ++packing) {
+    few_rows.nu_max = 0.82 + 1e-4 * packing;
+    makers.emplace_back(truth, few_rows);
+  }
   testing::Coverage coverage;
   for (std::uint64_t set = 0; set < 200; ++set) {
     testing::RowNoise noise(0.1, 95000 + set);
     std::vector<TestRecord> tests{
-        maker.test("d2", 1, 0.70, {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.05)})};
+        makers.front().test("d2", 1, 0.70, {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.05)})};
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-      tests.push_back(maker.isotropic_unloading(seed));
+      tests.push_back(makers[seed - 1].isotropic_unloading(seed));
       const double factor = noise.factor();
       for (Observation& row : tests.back().rows) row.P_star *= factor, row.stress.tensor *= factor;
     }
@@ -95,7 +99,7 @@ TEST(MeanOverSets, OfThePressureAlongUnloadingIsWhatWasPutIn) {
       for (const fit::NamedEstimate& e : fit.stage.estimates)
         if (e.name == "pressure.p0") coverage.add(e, truth);
     }
-    EXPECT_NEAR(found.isotropic.pressure.nu_c, truth.isotropic.pressure.nu_c, 1e-9) << "no packing's curve bends";
+    EXPECT_NEAR(found.isotropic.pressure.nu_c, truth.isotropic.pressure.nu_c, 1e-5) << "no packing's curve bends";
   }
   ASSERT_EQ(coverage.counts().size(), 1);
   EXPECT_LE(std::abs(coverage.counts().at("pressure.p0").distance()), 0.28);
