@@ -31,11 +31,14 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
   esac
   case $1 in
     release) build release "${options[@]}"; ctest --preset release --parallel $((3 * jobs)) ;;
-    long) build release "${options[@]}"; ctest --test-dir build/release -L '^long$' --output-on-failure --parallel "$jobs" ;;
+    long) build release "${options[@]}"; ctest --test-dir build/release -L '^long$' --verbose --parallel "$jobs" ;;
     clang | assertions | asan-ubsan | tsan) build "$1"; ctest --preset "$1" --parallel "$jobs" ;;
     sources) build sources ;;
     valgrind) build assertions; tests/valgrind.sh ;;
     fuzz) build release "${options[@]}"; tests/fuzz/run.sh --seconds 60 --grainlaw build/release/bin/grainlaw ;;
+    ground | calibration | truth)  # which ask for figures of the long tests, too
+      [[ $(known long 1) != "$digest" ]] || export LONG_LOG=$PWD/$folder/long.log
+      bash "tests/acceptance/$1.sh" ;;
     faults | kills | mutants) bash tests/acceptance/trust.sh "$1" ;;  # apart, so that a stop costs less
     trust) bash tests/acceptance/trust.sh finds digits stress conserved time_line suites ;;
     *) bash "tests/acceptance/$1.sh" ;;

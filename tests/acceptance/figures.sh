@@ -40,7 +40,7 @@ figure_of_time() { # name seconds bound
 figures_of_tests() { # executable gtest-filter expected-name-prefix...
   local executable=$1 filter=$2 lines prefix
   shift 2
-  lines=$("$executable" --gtest_filter="$filter" 2>/dev/null | grep -E '^figure( [^ ]+){3}$' || true)
+  lines=$(tests_by_filter "$executable" "$filter" | grep -E '^figure( [^ ]+){3}$' || true)
   while read -r _ name value bound; do
     if [[ -n ${name:-} ]]; then figure "$name" "$value" "<=$bound"; fi
   done <<<"$lines"
