@@ -94,9 +94,8 @@ std::string evolution_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories, each segment from its measured start: P* of ISO unloading (nu >= {:g}, start on Eq. (14)) "
       "relative to the mean of the tests, scale {:g}; s_par scale {:g} and F_par scale {:g} in shear, at constant "
-      "volume 0 < eps_dev <= {:g} "
-      "and, with {:g} times the weight, eps_dev >= {:g}, elsewhere all rows; P* in shear is shown without weight "
-      "because Eq. (16) has no dilatancy",
+      "volume 0 < eps_dev <= {:g} and, with {:g} times the weight, eps_dev >= {:g}, elsewhere all rows; P* in shear is "
+      "shown without weight because Eq. (16) has no dilatancy",
       options.iso_nu_min, options.pressure_scale, options.stress_scale, options.fabric_scale, options.rate_window,
       options.steady_weight, options.steady_from);
 }
@@ -170,11 +169,12 @@ TiedCoupling tied_a1(const std::vector<Trajectory>& trajectories, const LawParam
     if (t.direction.de == 0 || std::abs(t.direction.dx) > 1e-12) continue;
     const double B = law.isotropic.B_star(t.nu_start);
     for (const TrajectoryRow& row : t.rows) {
-      if (t.direction.de * row.e < options.steady_from) continue;
+      const double F = row.data.F.dot(t.direction.N);
+      if (t.direction.de * row.e < options.steady_from || std::isnan(F)) continue;
       RatioOfTest& ratio = ratios[t.test];
       ratio.packing = t.cluster;
       ratio.sigma += row.data.sigma.dot(t.direction.N);
-      ratio.B_F += B * row.data.F.dot(t.direction.N);
+      ratio.B_F += B * F;
     }
   }
   std::erase_if(ratios, [](const auto& test) { return !(test.second.B_F > 0); });
