@@ -1,6 +1,6 @@
 // D9 at N = 1000 and three densities: the residual of the energy balance over the dissipation. The quick version and
 // the description are in tests/verification/dem/energy_balance_test.cpp. What contacts that begin or end leave is 9e-5 of what
-// is lost, by one packing more and by another less (4e-5 to 1.4e-4): twelve together know it to 6 %, three did to 12.
+// is lost, by one packing more and by another less (2e-5 to 1.4e-4): three had summed to 1.04e-4.
 
 #include <gtest/gtest.h>
 
