@@ -131,6 +131,21 @@ StageDefinition rattlers_stage(const StateLawName& of, const std::vector<Density
   return stage;
 }
 
+/// Eq. (15) over its nu_c, times that of the start; `C_of` says the contacts at a jamming density and point.
+template <class ContactsOf>
+std::vector<ResidualBlock> pressure_blocks(const std::vector<DensitySeries>& series, double start,
+                                           const ContactsOf& C_of) {
+  const auto measured = [=](const DensityPoint& p) { return start * p.P_star / (p.nu * C_of(start, p)); };
+  return blocks_of<Jet3>(
+      series, "P_scaled", 3,
+      [=](const DensityPoint& p, const auto* x) {
+        using T = std::decay_t<decltype(*x)>;
+        const T scale = start * C_of(x[2], p) / (x[2] * C_of(start, p));
+        return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) * scale - measured(p);
+      },
+      measured);
+}
+
 StageDefinition pressure_stage(const StateLawName& of, const std::vector<DensitySeries>& series,
                                const std::string& window) {
   StageDefinition stage = state_law_stage(of, "pressure", window, series);
@@ -139,15 +154,8 @@ StageDefinition pressure_stage(const StateLawName& of, const std::vector<Density
     nu_c = std::min(nu_c, highest);
   };
   stage.blocks = [of, series](const LawParameters<double>& law) {
-    const double start = (law.*of.law).pressure.nu_c;
-    const auto measured = [start](const DensityPoint& p) { return start * p.P_star / (p.nu * p.C()); };
-    return blocks_of<Jet3>(
-        series, "P_scaled", 3,
-        [start, measured](const DensityPoint& p, const auto* x) {
-          using T = std::decay_t<decltype(*x)>;
-          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) * (start / x[2]) - measured(p);
-        },
-        measured);
+    return pressure_blocks(series, (law.*of.law).pressure.nu_c,
+                           [](const auto&, const DensityPoint& p) { return p.C(); });
   };
   stage.judge = require_densities(series, 3);
   return stage;
@@ -160,24 +168,13 @@ StageDefinition pressure_of_assumed_contacts(const StateLawName& of, const std::
   StageDefinition stage = pressure_stage(of, series, window);
   stage.window += "; C by Eqs. (11), (12) as published, from the nu_c of the pressure on";
   stage.blocks = [of, series](const LawParameters<double>& law) {
-    const auto C_of = [assumed = law.*of.law](const auto& nu_c, double nu) {
-      using T = std::decay_t<decltype(nu_c)>;
-      const Coordination<double>& c = assumed.coordination;
-      const Rattlers<double>& r = assumed.rattlers;
-      return StateLaw<T>{{T(c.C1), T(c.alpha), nu_c}, {T(r.phi_c), T(r.phi_v)}, {}}.C(nu);
-    };
-    const double start = (law.*of.law).pressure.nu_c;
-    const auto measured = [C_of, start](const DensityPoint& p) {
-      return start * p.P_star / (p.nu * C_of(start, p.nu));
-    };
-    return blocks_of<Jet3>(
-        series, "P_scaled", 3,
-        [C_of, start, measured](const DensityPoint& p, const auto* x) {
-          using T = std::decay_t<decltype(*x)>;
-          const T scale = start * C_of(x[2], p.nu) / (x[2] * C_of(start, p.nu));
-          return Pressure<T>{x[0], x[1], x[2]}.scaled(p.nu) * scale - measured(p);
-        },
-        measured);
+    return pressure_blocks(series, (law.*of.law).pressure.nu_c,
+                           [assumed = law.*of.law](const auto& nu_c, const DensityPoint& p) {
+                             using T = std::decay_t<decltype(nu_c)>;
+                             const Coordination<double>& c = assumed.coordination;
+                             const Rattlers<double>& r = assumed.rattlers;
+                             return StateLaw<T>{{T(c.C1), T(c.alpha), nu_c}, {T(r.phi_c), T(r.phi_v)}, {}}.C(p.nu);
+                           });
   };
   return stage;
 }
