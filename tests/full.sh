@@ -37,7 +37,7 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
     valgrind) build assertions; tests/valgrind.sh ;;
     fuzz) build release "${options[@]}"; tests/fuzz/run.sh --seconds 60 --grainlaw build/release/bin/grainlaw ;;
     ground | calibration | truth)  # which ask for figures of the long tests, too
-      [[ $(known long 1) != "$digest" ]] || export LONG_LOG=$PWD/$folder/long.log
+      ! up_to_date long || export LONG_LOG=$PWD/$folder/long.log
       bash "tests/acceptance/$1.sh" ;;
     faults | kills | mutants) bash tests/acceptance/trust.sh "$1" ;;  # apart, so that a stop costs less
     trust) bash tests/acceptance/trust.sh finds digits stress conserved time_line suites ;;
@@ -46,15 +46,26 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
 }
 
 # --- What is known of a stage: build/full/STAGE.result, DIGEST VERDICT SECONDS DATE COUNTS..., then what failed -----------
-digest_of_sources() ( # committed or not; without the pages, whose tests are part of every CI run
+kind_of() { # stage: whether it builds and tests alone, so that scripts that judge may change; CI runs the tests of those
+  case $1 in
+    long | clang | sources | assertions | asan-ubsan | tsan | valgrind | fuzz) echo programs ;;
+    *) echo all ;;
+  esac
+}
+
+digest_of_sources() ( # programs or all: committed or not; without the pages, whose tests are part of every CI run
+  left_out=('*.md')
+  if [[ $1 == programs ]]; then left_out+=(tests/full.sh tests/coverage.sh 'tests/acceptance/*' 'tests/mutants/*'); fi
   if git rev-parse --git-dir >/dev/null 2>&1; then
     export GIT_INDEX_FILE=$folder/index.$BASHPID  # another call may ask at the same time
     trap 'rm -f "$GIT_INDEX_FILE"' EXIT
     git add --all . 2>/dev/null
-    git rm -r --cached --quiet --ignore-unmatch -- '*.md'
+    git rm -r --cached --quiet --ignore-unmatch -- "${left_out[@]}"
     git write-tree
   else
-    find . -path ./build -prune -o -type f ! -name '*.md' -print0 | sort -z | xargs -0 sha256sum | sha256sum | cut -c 1-40
+    but=()
+    for pattern in "${left_out[@]}"; do but+=(! -path "./$pattern"); done
+    find . -path ./build -prune -o -type f "${but[@]}" -print0 | sort -z | xargs -0 sha256sum | sha256sum | cut -c 1-40
   fi
 )
 
@@ -62,7 +73,9 @@ known() { # stage field
   [[ -s $folder/$1.result ]] && head -1 "$folder/$1.result" | cut -d ' ' -f "$2"
 }
 
-passed() { [[ $(known "$1" 1) == "$digest" && $(known "$1" 2) == passed ]]; }
+up_to_date() { [[ $(known "$1" 1) == "${digest[$(kind_of "$1")]}" ]]; }
+
+passed() { up_to_date "$1" && [[ $(known "$1" 2) == passed ]]; }
 
 seconds_of() { # stage: what it took when it last passed, or the estimate
   if [[ $(known "$1" 2) == passed ]]; then known "$1" 3; else echo $((60 * minutes[$1])); fi
@@ -145,20 +158,20 @@ follow() { # pid number stage: says how far it is, on a terminal in one line, el
 
 summary() {
   local stage
-  echo "Sources: tree $digest (without pages), commit $(git rev-parse --short HEAD 2>/dev/null || echo none)$(
+  echo "Sources: tree ${digest[all]} (without pages), commit $(git rev-parse --short HEAD 2>/dev/null || echo none)$(
     [[ -z $(git status --porcelain 2>/dev/null) ]] || echo " and changes"); $(nproc) cores, $(g++ --version | head -1)."
   echo
   echo "| Stage | Verdict | Minutes | What ran |"
   echo "|---|---|---|---|"
   for stage in "${wanted[@]}"; do
-    if [[ $(known "$stage" 1) == "$digest" ]]; then
+    if up_to_date "$stage"; then
       echo "| $stage | $(known "$stage" 2 | tr _ ' ') | $(($(known "$stage" 3) / 60)) | $(known "$stage" 5-) |"
     else
       echo "| $stage | not run | | |"
     fi
   done
   for stage in "${wanted[@]}"; do
-    if [[ $(known "$stage" 1) != "$digest" || $(tail -n +2 "$folder/$stage.result" | wc -l) == 0 ]]; then continue; fi
+    if ! up_to_date "$stage" || [[ $(tail -n +2 "$folder/$stage.result" | wc -l) == 0 ]]; then continue; fi
     echo
     echo "$stage: $(tail -n +2 "$folder/$stage.result" | paste -sd , | sed 's/,/, /g')"
   done
@@ -185,7 +198,8 @@ for argument in "$@"; do
 done
 if ((${#wanted[@]} == 0)); then wanted=("${names[@]}"); fi
 mkdir -p $folder
-digest=$(digest_of_sources)
+declare -A digest
+for kind in programs all; do digest[$kind]=$(digest_of_sources $kind); done
 plan >&2
 if [[ $plan_only == yes ]]; then exit; fi
 ./install-packages.sh --full >&2
@@ -194,7 +208,7 @@ pid=
 trap '[[ -z $pid ]] || kill -- "-$pid" 2>/dev/null; summary >$folder/summary.md; exit 130' INT TERM HUP
 status=0
 for ((k = 0; k < ${#wanted[@]}; k++)); do
-  stage=${wanted[k]}
+  stage=${wanted[k]} kind=$(kind_of "${wanted[k]}")
   if [[ $again == no ]] && passed "$stage"; then continue; fi
   begin=$SECONDS code=0
   echo "[$((k + 1))/${#wanted[@]}] $stage, begun at $(date +%H:%M), log $folder/$stage.log" >&2
@@ -207,9 +221,9 @@ for ((k = 0; k < ${#wanted[@]}; k++)); do
   pid=
   verdict=failed
   case $code in 0) verdict=passed ;; 77) verdict=left_out ;; esac
-  if [[ $(digest_of_sources) != "$digest" ]]; then verdict=sources_changed; fi
+  if [[ $(digest_of_sources "$kind") != "${digest[$kind]}" ]]; then verdict=sources_changed; fi
   {
-    echo "$digest $verdict $((SECONDS - begin)) $(date +%F) $(counts "$stage")"
+    echo "${digest[$kind]} $verdict $((SECONDS - begin)) $(date +%F) $(counts "$stage")"
     failures "$stage"
   } >"$folder/$stage.result"
   if [[ $verdict == failed || $verdict == sources_changed ]]; then status=1; fi

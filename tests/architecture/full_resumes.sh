@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# full_resumes.sh: tests/full.sh on a tree of two stages that only count how often they run: what has passed is not run again,
-# what failed is, and changed sources are run anew.
+# full_resumes.sh: tests/full.sh on a tree of stages that only count how often they run: what has passed is not run again,
+# what failed is, and changed sources are run anew; scripts that judge are no sources of what only builds and tests.
 set -euo pipefail
 script=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../full.sh")
 tree=$(mktemp -d)
@@ -38,4 +38,23 @@ expect 0 "page law" --again page law
 echo new >source
 expect 0 "page" page
 expect 0 "law" page law
+
+# Of valgrind, which builds and tests, programs that only say so. Without git, too.
+mkdir bin
+for name in cmake valgrind; do printf '#!/bin/sh\nexit 0\n' >bin/$name; chmod +x bin/$name; done
+printf '#!/bin/sh\necho valgrind >>build/ran\n' >tests/valgrind.sh
+chmod +x tests/valgrind.sh
+export PATH=$tree/bin:$PATH
+for git in yes no; do
+  if [[ $git == no ]]; then rm -rf .git; fi
+  expect 0 "page valgrind" page valgrind
+  echo '# a word' >>tests/acceptance/page.sh
+  expect 0 "page" page valgrind
+  echo '# a word' >>page.md
+  expect 0 "" page valgrind
+  echo newer >>source
+  expect 0 "page valgrind" page valgrind
+  echo '# a word' >>tests/acceptance/setup.sh
+  expect 0 "page" page valgrind
+done
 echo 'full_resumes: ok'
