@@ -7,9 +7,6 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kSameDensity =
-    1e-3;  // kept states of different packings differ by rounding, those of others may by more
-
 bool same_path(const TestRecord& a, const TestRecord& b) {
   return a.rows.size() == b.rows.size() && a.path.branch == b.path.branch &&
          std::abs(a.path.nu - b.path.nu) < kSameDensity &&

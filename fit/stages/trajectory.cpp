@@ -41,6 +41,7 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
   Trajectory t;
   t.test = test.name;
   t.segment = segment;
+  t.branch = test.path.branch;
   t.start = measured_state(test, start);
   t.nu_start = start.nu;
   t.direction = law_direction(StrainRate{D});

@@ -30,6 +30,7 @@ struct Trajectory {
   std::string test;
   int cluster = 0;
   int segment = 0;
+  Branch branch = Branch::unloading;  ///< on which the test starts
   bool starts_on_law =
       false;  ///< P by Eq. (14) at nu_start, else all of `start`, whose fabric is NaN if the test tells none
   LawState<double> start;              ///< measured; s_r the measured ratio at the reversal before, if any

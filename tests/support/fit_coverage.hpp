@@ -72,39 +72,33 @@ void in_parallel(int n, Work work) {
     });
 }
 
-/// Of data of the same kind that are not judged.
-struct OtherPackings {
-  std::vector<fit::SizedLaw> many;         ///< fits to 64 packings each
-  std::vector<fit::VariancePrior> priors;  ///< by the first of these
-};
-
-/// `fits` fits to many, and the study's priors, as many packings as one would simulate once give them: 64, and 16 sets each of 2, 3
-/// and 5; `fitted` being a fit to set k of a study's data. One prior is itself off by chance (64 packings know a standard error to
-/// 9 %), the same way for all sets: its degrees of freedom speak of the mean over priors.
+/// The study's priors, as many packings of the same kind that are not judged, as one would simulate once, give them: 64, and 16 sets each of
+/// 2, 3 and 5; `fitted` being a fit to set k of a study's data. One prior is itself off by chance (64 packings know a standard
+/// error to 9 %), the same way for all sets: its degrees of freedom speak of the mean over priors.
 template <class Fitted>
-OtherPackings other_packings(const CoverageStudy& study, int fits, Fitted fitted) {
+std::vector<fit::VariancePrior> priors_of(const CoverageStudy& study, Fitted fitted) {
   constexpr std::array<int, 3> kFew{2, 3, 5};
   constexpr int kSets = 16, kParts = kSets * static_cast<int>(kFew.size());
   const auto seed = [&](int which) {
     return 1000000000 + 100 * study.first_other() + 10000 * static_cast<std::uint64_t>(which);
   };
-  OtherPackings others;
-  others.many.resize(static_cast<std::size_t>(fits));
-  std::vector<fit::SizedLaw> parts(static_cast<std::size_t>(study.priors * kParts));
-  in_parallel(fits + study.priors * kParts, [&](int job) {
-    if (job < fits) {
-      others.many[static_cast<std::size_t>(job)] = fitted(study.with(64, seed(job)), 0);
+  std::vector<fit::SizedLaw> many(static_cast<std::size_t>(study.priors)),
+      parts(static_cast<std::size_t>(study.priors * kParts));
+  in_parallel(study.priors * (1 + kParts), [&](int job) {
+    if (job < study.priors) {
+      many[static_cast<std::size_t>(job)] = fitted(study.with(64, seed(job)), 0);
       return;
     }
-    const int part = job - fits, packings = kFew[static_cast<std::size_t>(part % kParts / kSets)];
+    const int part = job - study.priors, packings = kFew[static_cast<std::size_t>(part % kParts / kSets)];
     const std::uint64_t first = seed(part / kParts) + 1000 * static_cast<std::uint64_t>(packings);
     parts[static_cast<std::size_t>(part)] = fitted(study.with(packings, first), part % kSets);
   });
+  std::vector<fit::VariancePrior> priors;
   for (int which = 0; which < study.priors; ++which) {
     const auto first = parts.begin() + which * kParts;
-    others.priors.push_back(fit::variance_prior(others.many[static_cast<std::size_t>(which)], {first, first + kParts}));
+    priors.push_back(fit::variance_prior(many[static_cast<std::size_t>(which)], {first, first + kParts}));
   }
-  return others;
+  return priors;
 }
 
 class RowNoise {
@@ -210,7 +204,7 @@ inline fit::SizedLaw fit_of_isotropic_laws(const CoverageStudy& study, int k) {
 }
 
 inline Coverage coverage_of_isotropic_laws(const CoverageStudy& study) {
-  const std::vector<fit::VariancePrior> priors = other_packings(study, study.priors, fit_of_isotropic_laws).priors;
+  const std::vector<fit::VariancePrior> priors = priors_of(study, fit_of_isotropic_laws);
   Coverage coverage;
   for (int k = 0; k < study.sets; ++k) {
     fit::SizedLaw found = fit_of_isotropic_laws(study, k);
@@ -268,9 +262,7 @@ inline LawParameters<double> medians(const std::vector<CalibratedLaw>& found) {
 
 /// The complete calibration, all stages, of data that the memory rung made: ISO unloading, D2 at three densities, D3 and
 /// D2->ISO at one, of each packing. Truth is what the same calibration finds without noise: the parameters of Eq. (16) are those
-/// that meet such data best. Where packings differ, it is what 640 others of them give, which is another value for chi, k, lambda,
-/// kappa, G and alpha of the memory rung however many packings there are (docs/validation-log.md). By Huber's loss, whose reach is
-/// the noise's, it is the median over the sets. Few rows and long
+/// that meet such data best. By Huber's loss, whose reach is the noise's, it is the median over the sets. Few rows and long
 /// steps, for speed; they are the same for the truth. lambda and kappa are as fitted to the paper's data: with lambda = 150 the
 /// fabric has caught up within a third of a row, and 12 rows cannot tell the two apart.
 class CompleteCalibration {
@@ -324,25 +316,12 @@ class CompleteCalibration {
     return fitted(clean(study.packings), study.loss).law.parameters;
   }
 
-  /// Ten fits to many others, and priors; made once for the studies that share them.
-  const OtherPackings& others(const CoverageStudy& study) const {
-    static std::map<std::pair<std::uint64_t, int>, OtherPackings> made;
+  /// Made once for the studies that share them.
+  const std::vector<fit::VariancePrior>& priors(const CoverageStudy& study) const {
+    static std::map<std::pair<std::uint64_t, int>, std::vector<fit::VariancePrior>> made;
     const auto [at, fresh] = made.try_emplace({study.first_other(), study.priors});
-    if (fresh)
-      at->second = other_packings(study, 10, [&](const CoverageStudy& other, int k) { return fitted(other, k); });
+    if (fresh) at->second = priors_of(study, [&](const CoverageStudy& other, int k) { return fitted(other, k); });
     return at->second;
-  }
-
-  /// What is found from many packings that differ: the mean over fits to others.
-  LawParameters<double> of_many(const CoverageStudy& study) const {
-    const std::vector<fit::SizedLaw>& many = others(study).many;
-    LawParameters<double> mean;
-    for (std::size_t i = 0; i < kParameterCount; ++i) {
-      double sum = 0;
-      for (const fit::SizedLaw& one : many) sum += one.law.estimates[i].value;
-      *fields(mean)[i] = sum / static_cast<double>(many.size());
-    }
-    return mean;
   }
 
  private:
@@ -354,7 +333,7 @@ inline std::vector<CalibratedLaw> calibrations_of(const CoverageStudy& study) {
   const CompleteCalibration scene;
   const std::vector<TestRecord> clean = scene.clean(study.packings);
   std::vector<CalibratedLaw> found(static_cast<std::size_t>(study.sets));
-  const std::vector<fit::VariancePrior> none, &priors = study.priors > 0 ? scene.others(study).priors : none;
+  const std::vector<fit::VariancePrior>& priors = scene.priors(study);
   in_parallel(study.sets, [&](int k) {
     fit::SizedLaw one = CompleteCalibration::fitted(clean, study, k);
     if (!priors.empty()) moderate(priors[static_cast<std::size_t>(k) % priors.size()], one.size, one.law);
@@ -380,7 +359,6 @@ inline Coverage coverage_of_calibration(const CoverageStudy& study) {
   const std::vector<CalibratedLaw> found = calibrations_of(study);
   const CompleteCalibration scene;
   if (study.loss == fit::Loss::huber) return coverage_about(medians(found), found);
-  if (study.packing_scatter > 0) return coverage_about(scene.of_many(study), found);
   return coverage_about(scene.without_noise(study), found);
 }
 

@@ -110,6 +110,62 @@ TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {
   }
 }
 
+// Packings differ in their jamming density: one carries more at all times, another less. That is no state that relaxes.
+TEST(MemoryFit, PackingsThatCarryMoreOrLessGiveTheLawOfTheirMean) {
+  auto tests = testing::synthetic_dataset(memory_truth(), of_memory());
+  for (TestRecord& test : tests) {
+    const double factor = test.packing.seed == 1 ? 1.03 : 0.97;
+    for (Observation& row : test.rows) {
+      row.P_star *= factor;
+      row.stress.tensor *= factor;
+    }
+  }
+  LawParameters<double> law = at_start();
+  run_stage(memory_stage(memory_trajectories(tests), {}), law, {}, {});
+  const auto found = fields(law);
+  const LawParameters<double> expected = memory_truth();
+  const auto true_value = fields(expected);
+  for (const char* name : {"memory.G", "memory.alpha", "memory.k", "memory.lambda", "memory.c_F", "memory.a2",
+                           "memory.chi", "memory.kappa"}) {
+    const std::size_t i = parameter_index(name);
+    EXPECT_NEAR(*found[i] / *true_value[i], 1, 0.02) << name;
+  }
+}
+
+// A pressure that all packings have at their starts, and the law has not, is the law's misfit: they are followed at their nu. So
+// is what those carry more that start on the other branch or sheared.
+TEST(MemoryFit, WhatAllPackingsCarryMoreThanTheLawIsNoDensityOfTheirs) {
+  const CalibrationOptions options;
+  auto all = memory_trajectories(testing::synthetic_dataset(memory_truth(), of_memory()));
+  for (Trajectory& t : all) t.start.P *= 1.03;
+  for (std::size_t i = 0, n = all.size(); i < n; ++i) {
+    Trajectory loading = all[i], sheared = all[i];
+    loading.test += "-loading";
+    loading.branch = Branch::loading;
+    loading.start.P *= 1.1;
+    sheared.test += "-sheared";
+    sheared.start.P *= 1.1;
+    if (!sheared.axes.empty()) sheared.start.sigma += 0.1 * sheared.start.P * sheared.axes.front();
+    all.push_back(loading);
+    all.push_back(sheared);
+  }
+  LawParameters<double> truth = memory_truth();
+  const Problem problem = problem_of(memory_stage(all, options), truth);
+  std::vector<double> x;
+  for (const FreeParameter& p : problem.parameters) x.push_back(*fields(truth)[parameter_index(p.name)]);
+  std::size_t sheared = 0;
+  for (const Trajectory& t : all) {
+    if (t.axes.empty()) continue;
+    const ResidualBlock& block = problem.blocks.at(sheared++);
+    std::vector<double> misfit(static_cast<std::size_t>(block.rows()));
+    ASSERT_TRUE(block.evaluate(x.data(), misfit.data(), nullptr));
+    integrate<double>(t, truth, Rung::memory, Coupling::energy, options.max_step,
+                      [&](std::size_t i, const LawState<double>& y) {
+                        EXPECT_NEAR(misfit[i], y.P - t.rows[i].data.P, 1e-12 * y.P) << t.test;
+                      });
+  }
+}
+
 TEST(MemoryFit, CalibrationFindsItWhereTheLawsItNeedsAre) {
   SyntheticOptions few = of_memory();
   few.densities = {0.70, 0.74};
