@@ -20,7 +20,6 @@ constexpr std::array kFree{"memory.G",   "memory.alpha", "memory.k",   "memory.l
 constexpr std::size_t kVolumetric = 2;
 constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number, chance aside
 constexpr double kWindowRounding = 1e-9;
-constexpr double kSameRatio = 0.05;  // of stress ratios of starts that are alike: isotropic ones scatter by a hundredth
 
 bool constant_volume(const Trajectory& t) { return std::abs(t.direction.dx) <= 1e-12; }
 
@@ -75,14 +74,8 @@ ResidualBlock memory_block(const Trajectory& t, const LawParameters<double>& fix
   return block;
 }
 
-/// Whether tests start in states that differ by their packings alone.
-bool start_alike(const Trajectory& a, const Trajectory& b) {
-  return a.branch == b.branch && std::abs(a.nu_start - b.nu_start) < kSameDensity &&
-         (a.start.sigma / a.start.P - b.start.sigma / b.start.P).norm() < kSameRatio;
-}
-
 /// The trajectories, each as dense as the law would have to be to carry at the start of the test what its packing carries, beside the
-/// mean of the packings whose tests start alike. Packings differ in their jamming density, and shear does not undo that; at
+/// mean of the packings whose tests start at the same density of the same branch. Packings differ in their jamming density, and shear does not undo that; at
 /// one density for all, the law takes it for a state that relaxes, and what it does then is not linear: many packings do not
 /// find the law of their mean.
 std::vector<Trajectory> at_own_densities(std::vector<Trajectory> all, const LawParameters<double>& law) {
@@ -100,7 +93,8 @@ std::vector<Trajectory> at_own_densities(std::vector<Trajectory> all, const LawP
   for (const Start& own : starts) {
     std::map<int, double> of_packings;
     for (const Start& other : starts) {
-      if (start_alike(*own.of, *other.of)) of_packings[other.of->cluster] = other.compression;
+      if (own.of->branch == other.of->branch && std::abs(own.of->nu_start - other.of->nu_start) < kSameDensity)
+        of_packings[other.of->cluster] = other.compression;
     }
     double mean = 0;
     for (const auto& [packing, compression] : of_packings)
