@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "model/vocabulary/error.hpp"
@@ -223,6 +224,7 @@ Solution solve(const Problem& problem, int threads, const std::string& stage, co
     solution.weight.segment(row, block.rows()) = block.weight;
     row += block.rows();
   }
+  solution.reach = Eigen::VectorXd::Constant(solution.weight.size(), std::numeric_limits<double>::infinity());
   solution.pull_slope = Eigen::VectorXd::Ones(solution.weight.size());
 
   // Ceres projects steps into the box but does not hold a parameter there, which makes the others crawl. Parameters that

@@ -18,10 +18,11 @@ struct Solution {
   Eigen::VectorXd misfit;      ///< model - data of all rows of all blocks in order, unweighted
   Eigen::VectorXd weight;      ///< of these rows
   Eigen::VectorXd
-      pull_slope;  ///< of these rows: d(w^2 misfit) over w^2 d misfit; 1, or 0 where Huber's loss holds the pull
-  Eigen::MatrixXd jacobian;   ///< d misfit/dx
-  Eigen::MatrixXd curvature;  ///< curvature(), set by fit_stage
-  std::vector<int> cluster;   ///< of these rows
+      reach;  ///< of these rows: w |misfit| without the loss's factor, beyond which Huber's loss holds the pull
+  Eigen::VectorXd pull_slope;  ///< of these rows: d(w^2 misfit) over w^2 d misfit; 1 but for Huber's loss
+  Eigen::MatrixXd jacobian;    ///< d misfit/dx
+  Eigen::MatrixXd curvature;   ///< curvature(), set by fit_stage
+  std::vector<int> cluster;    ///< of these rows
   double initial_cost = 0, final_cost = 0;
   int iterations = 0;
   std::string termination;  ///< Ceres's word and message

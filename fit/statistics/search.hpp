@@ -1,9 +1,6 @@
 #pragma once
 // How the minimum of a problem is looked for: by its loss, and from several starts.
 //
-// Huber's loss in place of squares: a row further from the fit than 1.345 times the scatter of its quantity counts by its
-// distance and not by its square. Formulas, sources and what it does to errors: docs/theory/fit.md, section Huber's loss.
-//
 // Several starts, where a cost may have several minima: the given one, and others around it. Each parameter is multiplied
 // by a factor within 1/3 ... 3, uniform in its logarithm; one that starts at zero begins within a third of its scale, a
 // jamming density within +-0.005. The lowest cost is kept. The starts are the same in every run.
@@ -29,9 +26,6 @@ static_assert(tells_every_member<StartSearch>());
 /// The best of `starts` (at least 1) solutions of the problem by its loss, and in `search` how many of them ended there.
 Solution minimise(const Problem& problem, int starts, int threads, const std::string& stage, const RunControl& control,
                   StartSearch& search);
-
-/// Solves with Huber's loss; the weights of the result contain its factors. Costs are those of the last factors.
-Solution solve_huber(const Problem& problem, int threads, const std::string& stage, const RunControl& control);
 
 /// Of the parameters `from`, number `which` (0: as given) of the starts.
 std::vector<FreeParameter> start_number(const std::vector<FreeParameter>& from, int which);

@@ -69,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Studies, CoverageModerated,
                                            CoverageStudy{1000, 10, 0.9, 0.02, 1300000, fit::Loss::squares, 10, 1300000},
                                            CoverageStudy{300, 2, 0.9, 0.02, 1400000, fit::Loss::huber, 10, 1700000},
                                            CoverageStudy{300, 3, 0.9, 0.02, 1500000, fit::Loss::huber, 10, 1700000},
-                                           CoverageStudy{300, 5, 0.9, 0.02, 1600000, fit::Loss::huber, 10, 1700000},
+                                           CoverageStudy{1000, 5, 0.9, 0.02, 1600000, fit::Loss::huber, 10, 1700000},
                                            CoverageStudy{300, 10, 0.9, 0.02, 1700000, fit::Loss::huber, 10, 1700000}),
                          kNameOfStudy);
 

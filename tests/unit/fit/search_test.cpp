@@ -1,4 +1,5 @@
 #include "fit/statistics/search.hpp"
+#include "fit/statistics/huber_loss.hpp"
 
 #include <gtest/gtest.h>
 
@@ -59,6 +60,52 @@ TEST(Robust, TheErrorIsThatOfItsEstimate) {
   const StageFit fit = fit_stage("huber", "", {{{"x", 0, -100, 100, 1}}, packings, Loss::huber}, "", 1, {});
   const double error = fit.stage.estimates[0].estimate.standard_error;
   EXPECT_NEAR(n * error * error, 1 / 0.95, 0.01);
+}
+
+/// The value that packings have in common, of their rows.
+Estimate common_value(const std::vector<std::vector<double>>& rows) {
+  std::vector<ResidualBlock> packings;
+  for (const std::vector<double>& y : rows) {
+    packings.push_back(values(y));
+    packings.back().cluster = static_cast<int>(packings.size()) - 1;
+  }
+  return fit_stage("huber", "", {{{"x", 0, -100, 100, 1}}, packings, Loss::huber}, "", 1, {})
+      .stage.estimates[0]
+      .estimate;
+}
+
+// Five packings, one of which moves away: where the loss begins to hold it a fifth of the information would be gone at once.
+TEST(Robust, ErrorsDoNotJumpWhereARowIsHeld) {
+  const auto error_of = [](double away) { return common_value({{-1}, {-0.5}, {0}, {0.5}, {away}}).standard_error; };
+  double before = error_of(1);
+  for (int k = 1; k <= 300; ++k) {
+    const double error = error_of(1 + 0.01 * k);
+    EXPECT_NEAR(error / before, 1, 0.03) << k;
+    before = error;
+  }
+}
+
+// Packings whose rows scatter more or less, each with a row in six that is far off on the same side, as a model's misfit is: by
+// how much these pull, their scatter says. Variance beside that of the fits without each packing in turn.
+TEST(Robust, TheErrorCountsThatTheReachIsMeasured) {
+  std::vector<std::vector<double>> rows;
+  for (int c = 0; c < 12; ++c) {
+    std::vector<double> y(4, 50);
+    for (int i = 0; i < 20; ++i) y.push_back((0.6 + 0.8 * c / 11) * quantile(boost::math::normal(), (i + 0.5) / 20));
+    rows.push_back(y);
+  }
+  const double error = common_value(rows).standard_error;
+  const double n = static_cast<double>(rows.size());
+  double sum = 0, squares = 0;
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    std::vector<std::vector<double>> others = rows;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(c));
+    const double x = common_value(others).value;
+    sum += x;
+    squares += x * x;
+  }
+  const double jackknife = std::sqrt((n - 1) / n * (squares - sum * sum / n));
+  EXPECT_NEAR(error / jackknife, 1, 0.15);
 }
 
 TEST(Robust, WithoutOutliersItIsTheMean) {
