@@ -36,8 +36,9 @@ TEST(CoverageOfPackingsThatDiffer, IsOfWhatNoNoiseGives) {
     EXPECT_LE(std::abs(count.distance()), 4 * std::sqrt(1. / study.sets)) << parameter;
 }
 
-// Moderated (docs/theory/fit.md): from two packings on, both losses, over several priors. Of ten packings 1000 sets, laws over
-// density 8000: 300 and 2000 once left a parameter so near the line that chance decided. Both were decided on before more were seen.
+// Moderated (docs/theory/fit.md): from two packings on, both losses, over several priors. Of ten packings, and of five by Huber's
+// loss, 1000 sets, laws over density 8000: 300 and 2000 once left a parameter so near the line that chance decided. Each was decided on
+// before more were seen.
 class CoverageModerated : public Coverage {};
 
 TEST_P(CoverageModerated, IsotropicLaws) {
