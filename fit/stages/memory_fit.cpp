@@ -74,10 +74,10 @@ ResidualBlock memory_block(const Trajectory& t, const LawParameters<double>& fix
   return block;
 }
 
-/// The trajectories, each as dense as the law would have to be to carry at the start of the test what its packing carries, beside the
-/// mean of the packings whose tests start at the same density of the same branch. Packings differ in their jamming density, and shear does not undo that; at
-/// one density for all, the law takes it for a state that relaxes, and what it does then is not linear: many packings do not
-/// find the law of their mean.
+/// The trajectories, each as dense as the law would have to be to carry at the start of the test what its packing carries,
+/// beside the mean of the packings whose tests start at the same density of the same branch. Packings differ in their
+/// jamming density, and shear does not undo that; at one density for all, the law takes it for a state that relaxes, and
+/// what it does then is not linear: many packings do not find the law of their mean.
 std::vector<Trajectory> at_own_densities(std::vector<Trajectory> all, const LawParameters<double>& law) {
   struct Start {
     const Trajectory* of;
