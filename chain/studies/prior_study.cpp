@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <set>
-#include <thread>
 #include <utility>
 
+#include "model/side_by_side.hpp"
 #include "model/student.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -26,25 +24,11 @@ constexpr std::size_t kGroups = 6;  // of each
 /// Single fits side by side: their threads would wait for each other more than they work.
 std::vector<fit::SizedLaw> fitted(const std::vector<std::vector<TestRecord>>& data, const Execution& execution) {
   std::vector<fit::SizedLaw> fits(data.size());
-  std::atomic<std::size_t> next = 0;
-  std::vector<std::exception_ptr> failed(data.size());
-  const auto work = [&] {
-    for (std::size_t k = next++; k < data.size() && !execution.stop.stop_requested(); k = next++) {
-      try {
-        const fit::Calibration c = fit::calibrate(data[k], {}, {});
-        fits[k] = {c.law, c.size};
-      } catch (...) {
-        failed[k] = std::current_exception();
-      }
-    }
-  };
-  {
-    std::vector<std::jthread> team;
-    for (int t = 0; t < execution.threads; ++t) team.emplace_back(work);
-  }
-  for (const std::exception_ptr& failure : failed) {
-    if (failure) std::rethrow_exception(failure);
-  }
+  side_by_side(data.size(), execution.threads, [&](std::size_t k) {
+    if (execution.stop.stop_requested()) return;
+    const fit::Calibration c = fit::calibrate(data[k], {}, {});
+    fits[k] = {c.law, c.size};
+  });
   if (execution.stop.stop_requested()) throw Interrupted("study prior: interrupted");
   return fits;
 }

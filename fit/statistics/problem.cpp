@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
-#include <mutex>
-#include <thread>
 
 #include "model/parameters.hpp"
+#include "model/side_by_side.hpp"
 
 namespace grainlaw::fit {
 namespace {
@@ -39,28 +37,11 @@ bool evaluate(const std::vector<ResidualBlock>& blocks, const Eigen::VectorXd& x
     rows += block.rows();
   }
   std::fill(misfit, misfit + rows, std::nan(""));
-  std::atomic<std::size_t> next = 0;
   std::atomic<bool> good = true;
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      for (std::size_t b = next++; b < blocks.size(); b = next++) {
-        double* J = jacobian == nullptr ? nullptr : jacobian + first[b] * x.size();
-        if (!blocks[b].evaluate(x.data(), misfit + first[b], J)) good = false;
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-    }
-  };
-  const int extra = std::min<int>(threads, static_cast<int>(blocks.size())) - 1;
-  {
-    std::vector<std::jthread> team;
-    for (int t = 0; t < extra; ++t) team.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  side_by_side(blocks.size(), threads, [&](std::size_t b) {
+    double* J = jacobian == nullptr ? nullptr : jacobian + first[b] * x.size();
+    if (!blocks[b].evaluate(x.data(), misfit + first[b], J)) good = false;
+  });
   return good && finite(misfit, rows) && (jacobian == nullptr || finite(jacobian, rows * x.size()));
 }
 

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <exception>
-#include <thread>
-#include <vector>
+
+#include "model/side_by_side.hpp"
 
 namespace grainlaw::predict {
 
@@ -13,24 +12,8 @@ namespace grainlaw::predict {
 /// throws, when all have ended.
 template <class Work>
 void in_ranges(std::size_t count, int threads, const Work& work) {
-  const std::size_t ranges = std::clamp<std::size_t>(static_cast<std::size_t>(std::max(threads, 1)), 1,
-                                                     std::max<std::size_t>(count, 1));
-  std::vector<std::exception_ptr> failures(ranges);
-  const auto one = [&](std::size_t range) {
-    try {
-      work(count * range / ranges, count * (range + 1) / ranges);
-    } catch (...) {
-      failures[range] = std::current_exception();
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t range = 1; range < ranges; ++range) others.emplace_back(one, range);
-    one(0);
-  }
-  for (const std::exception_ptr& failure : failures) {
-    if (failure) std::rethrow_exception(failure);
-  }
+  const std::size_t ranges = std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(std::max(threads, 1)));
+  side_by_side(ranges, threads, [&](std::size_t range) { work(count * range / ranges, count * (range + 1) / ranges); });
 }
 
 }  // namespace grainlaw::predict
