@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "model/calibrated_law.hpp"
@@ -19,12 +18,7 @@ struct FittedCurve {
   Rung model = Rung::evolution;
   std::vector<double> eps_dev, P_star, s_par, F_par;  ///< row by row, as in PredictedRow [-]
 };
-constexpr auto fields_of(std::type_identity<FittedCurve>) {
-  using C = FittedCurve;
-  return std::tuple{Field{&C::model, "model"}, Field{&C::eps_dev, "eps_dev"}, Field{&C::P_star, "P_star"},
-                    Field{&C::s_par, "s_par"}, Field{&C::F_par, "F_par"}};
-}
-static_assert(tells_every_member<FittedCurve>());
+GRAINLAW_FIELDS(FittedCurve, model, eps_dev, P_star, s_par, F_par);
 
 struct FittedPath {
   Path path;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "chain/planning/planned_spec.hpp"
@@ -18,30 +17,14 @@ namespace fs = std::filesystem;
 constexpr double kFittedRow = 14000;
 constexpr double kLammps = 12;  // time of a particle-step of LAMMPS on one core over that of our engine
 
-void cover(const PathTraits& path, PathTraits& all, bool first) {
-  if (first) {
-    all = path;
-    return;
-  }
-  all.nu_min = std::min(all.nu_min, path.nu_min);
-  all.nu_max = std::max(all.nu_max, path.nu_max);
-  all.eps_dev = std::max(all.eps_dev, path.eps_dev);
-  all.shear_path = std::max(all.shear_path, path.shear_path);
-  all.lode_min = std::min(all.lode_min, path.lode_min);
-  all.lode_max = std::max(all.lode_max, path.lode_max);
-  all.turns = std::max(all.turns, path.turns);
-  all.reversals = std::max(all.reversals, path.reversals);
-  all.expands = all.expands || path.expands;
-}
-
 PathTraits covered_by(const std::vector<const Path*>& paths) {
-  PathTraits all;
-  bool first = true;
+  std::optional<PathTraits> all;
   for (const Path* path : paths) {
     if (path->segments.empty()) continue;
-    cover(traits_of(resolve(*path)), all, std::exchange(first, false));
+    const PathTraits traits = traits_of(resolve(*path));
+    all = all ? both(*all, traits) : traits;
   }
-  return all;
+  return all.value_or(PathTraits{});
 }
 
 /// Of runs that cost this and the fit of `rows`; `like` is what the rate is measured on.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <memory>
 #include <utility>
@@ -27,9 +26,8 @@ constexpr double kLeastParticles = 4000;  // of a packing, below which its size 
 std::vector<std::string> unseen_laws(const std::vector<ShearFit>& shear) {
   std::vector<std::string> names;
   for (const ShearQuantity& quantity : kShearQuantities) {
-    const bool seen = std::any_of(shear.begin(), shear.end(), [&](const ShearFit& fit) {
-      return (fit.*quantity.estimate).status != Status::not_identified;
-    });
+    const bool seen = std::ranges::any_of(
+        shear, [&](const ShearFit& fit) { return (fit.*quantity.estimate).status != Status::not_identified; });
     if (!seen) names.push_back(quantity.name);
   }
   return names;

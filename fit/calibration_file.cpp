@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "fit/leave_one_out.hpp"
@@ -23,7 +22,7 @@ OrderedJson stage_to_json(const Stage& stage) {
     if (!profile.experiment.empty()) profiles.back()["experiment"] = profile.experiment;
   }
   OrderedJson& estimates = object["estimates"] = OrderedJson::object();
-  for (const NamedEstimate& named : stage.estimates) estimates[named.name] = estimate_to_json(named.estimate);
+  for (const NamedEstimate& named : stage.estimates) estimates[named.name] = named.estimate;
   object["tests"] = fields_to_json(stage.tests);
   return object;
 }
@@ -37,29 +36,9 @@ Stage stage_from_json(const Json& object) {
     profile.experiment = each.value("experiment", "");
   }
   for (const auto& item : object.at("estimates").items())
-    stage.estimates.push_back({item.key(), estimate_from_json(item.value())});
+    stage.estimates.push_back({item.key(), item.value().get<Estimate>()});
   read_fields(object.at("tests"), stage.tests);
   return stage;
-}
-
-constexpr std::array<std::pair<const char*, Estimate ShearFit::*>, 4> kShearEstimates{{
-    {"s_max", &ShearFit::s_max},
-    {"beta_s", &ShearFit::beta_s},
-    {"F_max", &ShearFit::F_max},
-    {"beta_F", &ShearFit::beta_F},
-}};
-
-OrderedJson shear_to_json(const ShearFit& shear) {
-  OrderedJson object = fields_to_json(shear);
-  for (const auto& [key, member] : kShearEstimates) object[key] = estimate_to_json(shear.*member);
-  return object;
-}
-
-ShearFit shear_from_json(const Json& object) {
-  ShearFit shear;
-  read_fields(object, shear);
-  for (const auto& [key, member] : kShearEstimates) shear.*member = estimate_from_json(object.at(key));
-  return shear;
 }
 
 /// Ours beside the published curves of `mode`; null where the data do not determine ours.
@@ -84,16 +63,10 @@ OrderedJson stages_to_json(const Calibration& calibration) {
   return stages;
 }
 
-OrderedJson shears_to_json(const Calibration& calibration) {
-  OrderedJson shear = OrderedJson::array();
-  for (const ShearFit& fit : calibration.shear) shear.push_back(shear_to_json(fit));
-  return shear;
-}
-
 /// `object` holds "stages" and "shear".
 void read_stages(const Json& object, Calibration& calibration) {
   for (const Json& stage : object.at("stages")) calibration.stages.push_back(stage_from_json(stage));
-  for (const Json& shear : object.at("shear")) calibration.shear.push_back(shear_from_json(shear));
+  read_fields(object.at("shear"), calibration.shear);
 }
 
 /// Seeds, and per parameter with an error: values without each of them, stated and jackknife error; null without any fit.
@@ -135,7 +108,7 @@ std::vector<LeftOut> left_out_from_json(const Json& object) {
 OrderedJson description_to_json(const Description& d) {
   return {{"name", d.name},
           {"stages", stages_to_json(d.calibration)},
-          {"shear", shears_to_json(d.calibration)},
+          {"shear", fields_to_json(d.calibration.shear)},
           {"curves", curves_to_json(d.calibration, d.name)}};
 }
 
@@ -156,7 +129,7 @@ void write_calibration(const std::filesystem::path& file, const Calibration& cal
                             {"spheres", calibration.size.spheres}};
   document["dataset_digest"] = calibration.law.dataset_digest;
   document["stages"] = stages_to_json(calibration);
-  document["shear"] = shears_to_json(calibration);
+  document["shear"] = fields_to_json(calibration.shear);
   document["leave_one_out"] = left_out_to_json(calibration);
   document["curves"] = curves_to_json(calibration, "");
   OrderedJson& descriptions = document["descriptions"] = OrderedJson::array();

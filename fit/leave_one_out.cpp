@@ -1,7 +1,6 @@
 #include "fit/leave_one_out.hpp"
 
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "model/vocabulary/error.hpp"

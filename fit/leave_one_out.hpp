@@ -2,7 +2,6 @@
 // The calibration again without each packing in turn: a check of the errors that the fit states by linear theory, by the
 // jackknife (docs/theory/fit.md, section Leave one out).
 
-#include <string>
 #include <vector>
 
 #include "fit/calibrate.hpp"

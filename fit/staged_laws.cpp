@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "fit/stages/density_fit.hpp"
 #include "fit/stages/density_law_fit.hpp"
@@ -141,8 +140,7 @@ void tie_errors(CalibratedLaw& law) {
 }
 
 bool all_converged(const Calibration& calibration) {
-  return std::all_of(calibration.stages.begin(), calibration.stages.end(),
-                     [](const Stage& stage) { return stage.converged; });
+  return std::ranges::all_of(calibration.stages, &Stage::converged);
 }
 
 }  // namespace grainlaw::fit

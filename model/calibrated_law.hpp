@@ -47,12 +47,7 @@ struct PackingScatter {
   double s_par = std::numeric_limits<double>::quiet_NaN();        ///< of s_par [-]
   double F_par = std::numeric_limits<double>::quiet_NaN();        ///< of F_par [-]
 };
-constexpr auto fields_of(std::type_identity<PackingScatter>) {
-  using S = PackingScatter;
-  return std::tuple{Field{&S::packings, "packings"}, Field{&S::degrees_of_freedom, "degrees_of_freedom"},
-                    Field{&S::compression, "compression"}, Field{&S::s_par, "s_par"}, Field{&S::F_par, "F_par"}};
-}
-static_assert(tells_every_member<PackingScatter>());
+GRAINLAW_FIELDS(PackingScatter, packings, degrees_of_freedom, compression, s_par, F_par);
 
 /// What the calibration has seen; outside, predictions are extrapolations. Without limits by default.
 struct ValidRange {

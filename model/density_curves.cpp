@@ -76,8 +76,7 @@ const std::vector<DensityCurve>& density_curves() {
 }
 
 bool has_values(const CalibratedLaw& law, const DensityCurve& curve) {
-  return std::all_of(curve.groups.begin(), curve.groups.end(),
-                     [&](const char* group) { return has_values(law, group); });
+  return std::ranges::all_of(curve.groups, [&](const char* group) { return has_values(law, group); });
 }
 
 double standard_error(const CalibratedLaw& law, const DensityCurve& curve, double nu) {

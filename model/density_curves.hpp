@@ -2,7 +2,6 @@
 // The law's curves over volume fraction, ours beside the published ones (Tables 2 and 3 of the paper through Eqs. 11,
 // 12, 14, 20). Curves are compared, not parameters: those of Eqs. (11) and (12) scatter hugely at equal curves.
 
-#include <string>
 #include <vector>
 
 #include "model/calibrated_law.hpp"

@@ -3,7 +3,6 @@
 // help and the report derive from. Names of files and JSON are those of the table (docs/formats.md).
 
 #include <array>
-#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>

@@ -80,9 +80,9 @@ void read_covariance(const Json& document, Eigen::MatrixXd& covariance) {
 
 }  // namespace
 
-OrderedJson estimate_to_json(const Estimate& estimate) {
+void to_json(OrderedJson& object, const Estimate& estimate) {
   const bool has_value = estimate.status != Status::not_identified;
-  OrderedJson object = OrderedJson::object();
+  object = OrderedJson::object();
   object["value"] = has_value ? number_or_null(estimate.value) : OrderedJson(nullptr);
   object["standard_error"] = has_value ? number_or_null(estimate.standard_error) : OrderedJson(nullptr);
   if (!has_value || !std::isinf(estimate.degrees_of_freedom))  // without the key: infinite
@@ -91,18 +91,16 @@ OrderedJson estimate_to_json(const Estimate& estimate) {
   if (std::isfinite(half)) object["interval_95"] = {estimate.value - half, estimate.value + half};
   object["status"] = to_string(estimate.status);
   if (!estimate.note.empty()) object["note"] = estimate.note;
-  return object;
 }
 
-Estimate estimate_from_json(const Json& object) {
-  Estimate estimate{number_or_nan(object.at("value")), number_or_nan(object.at("standard_error")),
-                    value_of<Status>(object.at("status").get<std::string>(), "status"), object.value("note", ""),
-                    degrees_of_freedom(object)};
+void from_json(const Json& object, Estimate& estimate) {
+  estimate = {number_or_nan(object.at("value")), number_or_nan(object.at("standard_error")),
+              value_of<Status>(object.at("status").get<std::string>(), "status"), object.value("note", ""),
+              degrees_of_freedom(object)};
   if ((estimate.status == Status::not_identified) != std::isnan(estimate.value)) {
     throw InvalidInput(
         fmt::format("value: must be null exactly when the status is '{}'", to_string(Status::not_identified)));
   }
-  return estimate;
 }
 
 OrderedJson parameters_to_json(const ParametersFile& parameters) {
@@ -117,7 +115,7 @@ OrderedJson parameters_to_json(const ParametersFile& parameters) {
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const ParameterInfo& info = parameter_table()[i];
     const Estimate& estimate = law.estimates[i];
-    OrderedJson entry = estimate_to_json(estimate);
+    OrderedJson entry = estimate;
     // the law's own value, so that what is predicted is what was fitted; forgotten where others of its group are not known
     if (estimate.status != Status::not_identified && !std::isnan(*values[i])) entry["value"] = *values[i];
     entry["symbol"] = info.symbol;
@@ -158,7 +156,7 @@ ParametersFile parameters_from_json(const Json& document, const std::string& nam
       Estimate& estimate = law.estimates[i];
       const ParameterInfo& info = parameter_table()[i];
       try {
-        estimate = estimate_from_json(item.value());
+        item.value().get_to(estimate);
       } catch (const InvalidInput& error) {
         throw InvalidInput(fmt::format("parameters.{}.{}", info.name, error.what()));
       }

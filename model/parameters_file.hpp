@@ -26,9 +26,9 @@ ParametersFile read_parameters(const std::filesystem::path& file);
 
 /// An estimate as it stands there and in calibration.json: {value, standard_error, degrees_of_freedom, interval_95, status,
 /// note}; value null when not identified, interval_95 left out without an error, note when empty.
-OrderedJson estimate_to_json(const Estimate& estimate);
+void to_json(OrderedJson& object, const Estimate& estimate);
 
 /// Throws InvalidInput when the value is null although the status promises one, or the reverse.
-Estimate estimate_from_json(const Json& object);
+void from_json(const Json& object, Estimate& estimate);
 
 }  // namespace grainlaw

@@ -83,22 +83,17 @@ Spokesmen spokesmen_for(const std::vector<StraightSegment>& path, const std::vec
   return alike.rehearsals.size() < kEnoughOfAKind ? all : alike;
 }
 
+PathTraits both(const PathTraits& a, const PathTraits& b) {
+  return {std::min(a.nu_min, b.nu_min),         std::max(a.nu_max, b.nu_max),       std::max(a.eps_dev, b.eps_dev),
+          std::max(a.shear_path, b.shear_path), std::min(a.lode_min, b.lode_min),   std::max(a.lode_max, b.lode_max),
+          std::max(a.turns, b.turns),           std::max(a.reversals, b.reversals), a.expands || b.expands};
+}
+
 std::vector<std::string> ways_outside(const PathTraits& path, const Spokesmen& spokesmen) {
   std::vector<std::string> ways;
   if (spokesmen.rehearsals.empty()) return ways;
   PathTraits seen = spokesmen.rehearsals.front()->traits;
-  for (const Rehearsal* rehearsal : spokesmen.rehearsals) {
-    const PathTraits& t = rehearsal->traits;
-    seen.nu_min = std::min(seen.nu_min, t.nu_min);
-    seen.nu_max = std::max(seen.nu_max, t.nu_max);
-    seen.eps_dev = std::max(seen.eps_dev, t.eps_dev);
-    seen.shear_path = std::max(seen.shear_path, t.shear_path);
-    seen.lode_min = std::min(seen.lode_min, t.lode_min);
-    seen.lode_max = std::max(seen.lode_max, t.lode_max);
-    seen.turns = std::max(seen.turns, t.turns);
-    seen.reversals = std::max(seen.reversals, t.reversals);
-    seen.expands = seen.expands || t.expands;
-  }
+  for (const Rehearsal* rehearsal : spokesmen.rehearsals) seen = both(seen, rehearsal->traits);
   const auto beyond = [&](const char* what, double value, double limit) {
     ways.push_back(fmt::format("{} {:.4g} (rehearsed: {:.4g})", what, value, limit));
   };

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,16 +34,11 @@ struct PathTraits {
   int reversals = 0;     ///< of these, where it turns back: <N, N before> < 0
   bool expands = false;  ///< whether the volume grows on a segment
 };
-constexpr auto fields_of(std::type_identity<PathTraits>) {
-  using T = PathTraits;
-  return std::tuple{
-      Field{&T::nu_min, "nu_min"},         Field{&T::nu_max, "nu_max"},       Field{&T::eps_dev, "eps_dev"},
-      Field{&T::shear_path, "shear_path"}, Field{&T::lode_min, "lode_min"},   Field{&T::lode_max, "lode_max"},
-      Field{&T::turns, "turns"},           Field{&T::reversals, "reversals"}, Field{&T::expands, "expands"}};
-}
-static_assert(tells_every_member<PathTraits>());
+GRAINLAW_FIELDS(PathTraits, nu_min, nu_max, eps_dev, shear_path, lode_min, lode_max, turns, reversals, expands);
 
 PathTraits traits_of(const std::vector<StraightSegment>& path);
+/// Of two paths together.
+PathTraits both(const PathTraits& a, const PathTraits& b);
 PathKind kind_of(const PathTraits& traits);
 
 /// What rehearsals are about: the quantities whose bands they widen.
@@ -66,12 +60,7 @@ struct RehearsedQuantity {
   double known = 0;    ///< of what was expected of that: (g.V g + sigma^2/n)/w^2 [-]
   double largest = 0;  ///< largest |d|/w [-]
 };
-constexpr auto fields_of(std::type_identity<RehearsedQuantity>) {
-  using Q = RehearsedQuantity;
-  return std::tuple{Field{&Q::rows, "rows"}, Field{&Q::square, "square"}, Field{&Q::known, "known"},
-                    Field{&Q::largest, "largest"}};
-}
-static_assert(tells_every_member<RehearsedQuantity>());
+GRAINLAW_FIELDS(RehearsedQuantity, rows, square, known, largest);
 
 struct RehearsedRung {
   Rung rung = Rung::evolution;
@@ -96,11 +85,7 @@ struct Rehearsal {
   Path path;
 };
 /// All but the path, which stands beside them in files.
-constexpr auto fields_of(std::type_identity<Rehearsal>) {
-  using R = Rehearsal;
-  return std::tuple{Field{&R::name, "name"}, Field{&R::kind, "kind"}, Field{&R::traits, "traits"},
-                    Field{&R::packings, "packings"}, Field{&R::rungs, "rungs"}};
-}
+GRAINLAW_SOME_FIELDS(Rehearsal, name, kind, traits, packings, rungs);
 
 /// Those that speak for a path: of its kind where there are enough, else all; never the path itself.
 struct Spokesmen {
@@ -121,12 +106,7 @@ struct LawError {
   double rms = std::numeric_limits<double>::quiet_NaN();      ///< D, what tau is part of [-]
   double largest = std::numeric_limits<double>::quiet_NaN();  ///< of all rows of all paths [-]
 };
-constexpr auto fields_of(std::type_identity<LawError>) {
-  using E = LawError;
-  return std::tuple{Field{&E::tau, "tau"}, Field{&E::degrees_of_freedom, "degrees_of_freedom"}, Field{&E::rms, "rms"},
-                    Field{&E::largest, "largest"}};
-}
-static_assert(tells_every_member<LawError>());
+GRAINLAW_FIELDS(LawError, tau, degrees_of_freedom, rms, largest);
 
 /// tau^2 = max(0, mean_j square_j - mean_j known_j) over the spokesmen that `rung` followed.
 LawError law_error(const Spokesmen& spokesmen, Rung rung, Rehearsed quantity);

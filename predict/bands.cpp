@@ -57,12 +57,6 @@ Variance BandMaker::of_law(const std::vector<RowSlope>& slopes, double (*slope)(
   return variance;
 }
 
-Variance BandMaker::of_law(const std::vector<RowSlope>& slopes, Rehearsed quantity) const {
-  return of_law(slopes, std::ranges::find_if(kBanded, [&](const Banded& b) {
-                          return b.error == quantity && b.band != &RowBand::s_dev && b.band != &RowBand::F_dev;
-                        })->slope);
-}
-
 double BandMaker::scatter(double nu, Rehearsed quantity) const {
   const PackingScatter& scatter = law_.scatter;
   return quantity == Rehearsed::P_star  ? scatter.compression * error_units(law_.parameters, nu).B

@@ -29,7 +29,6 @@ class BandMaker {
 
   /// g.V g of a quantity; NaN where slopes end.
   Variance of_law(const std::vector<RowSlope>& slopes, double (*slope)(const RowSlope&)) const;
-  Variance of_law(const std::vector<RowSlope>& slopes, Rehearsed quantity) const;
 
   /// Standard deviation between runs; NaN where none is known.
   double scatter(double nu, Rehearsed quantity) const;

@@ -21,20 +21,8 @@ struct QuantityComparison {
   double coverage_mean = std::numeric_limits<double>::quiet_NaN();    ///< of the mean curve's band [-]
   double coverage_single = std::numeric_limits<double>::quiet_NaN();  ///< of the single run's band [-]
 };
-constexpr auto fields_of(std::type_identity<QuantityComparison>) {
-  using Q = QuantityComparison;
-  return std::tuple{Field{&Q::quantity, "quantity"},
-                    Field{&Q::rows, "rows"},
-                    Field{&Q::bias, "bias"},
-                    Field{&Q::rms, "rms"},
-                    Field{&Q::normalised_rms, "normalised_rms"},
-                    Field{&Q::largest, "largest"},
-                    Field{&Q::largest_at_eps_dev, "largest_at_eps_dev"},
-                    Field{&Q::largest_at_nu, "largest_at_nu"},
-                    Field{&Q::coverage_mean, "coverage_mean"},
-                    Field{&Q::coverage_single, "coverage_single"}};
-}
-static_assert(tells_every_member<QuantityComparison>());
+GRAINLAW_FIELDS(QuantityComparison, quantity, rows, bias, rms, normalised_rms, largest, largest_at_eps_dev,
+                largest_at_nu, coverage_mean, coverage_single);
 
 /// What a prediction is compared by, and the law is judged by: [-] each.
 struct ComparedQuantity {
@@ -44,6 +32,7 @@ struct ComparedQuantity {
   double RowBand::*band;
   double Observation::*measured;
 };
+/// In the order of Rehearsed.
 inline constexpr std::array<ComparedQuantity, 3> kComparedQuantities{
     {{"P_star", [](const PredictedRow& row) { return row.state.P; }, [](const RowSlope& row) { return row.state.P; },
       &RowBand::P, &Observation::P_star},
@@ -56,10 +45,7 @@ struct Comparison {
   std::string test;                            ///< name of the test
   std::vector<QuantityComparison> quantities;  ///< P_star, s_par, F_par
 };
-constexpr auto fields_of(std::type_identity<Comparison>) {
-  return std::tuple{Field{&Comparison::test, "test"}, Field{&Comparison::quantities, "quantities"}};
-}
-static_assert(tells_every_member<Comparison>());
+GRAINLAW_FIELDS(Comparison, test, quantities);
 
 /// Shear path from which on rows count: before it the start, not the law, is compared. Zero on a path without shear.
 double counts_from(const std::vector<StraightSegment>& path);

@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <optional>
 
 #include "model/vocabulary/error.hpp"
 #include "predict/path_integration.hpp"

@@ -26,10 +26,7 @@ struct OutputPoint {
   int segment = 0;  ///< index of the segment
   double e = 0;     ///< path parameter in [0, length of the segment] [-]
 };
-constexpr auto fields_of(std::type_identity<OutputPoint>) {
-  return std::tuple{Field{&OutputPoint::segment, "segment"}, Field{&OutputPoint::e, "e"}};
-}
-static_assert(tells_every_member<OutputPoint>());
+GRAINLAW_FIELDS(OutputPoint, segment, e);
 
 /// `per_segment` equal intervals on each segment, ends included.
 std::vector<OutputPoint> uniform_points(const std::vector<StraightSegment>& segments, int per_segment);

@@ -63,6 +63,9 @@ void read_rung(const Json& object, PredictionFolder& content) {
   read_fields(object.at("changes"), content.changes);
 }
 
+constexpr std::array kMeans{&QuantityComparison::bias, &QuantityComparison::rms, &QuantityComparison::normalised_rms,
+                            &QuantityComparison::coverage_mean, &QuantityComparison::coverage_single};
+
 }  // namespace
 
 void write_prediction_series(const std::filesystem::path& file, const std::vector<PredictedRow>& rows) {
@@ -108,11 +111,7 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
           const QuantityComparison& q = entry.comparison.quantities.at(i);
           sums[i].quantity = q.quantity;
           sums[i].rows += q.rows;
-          sums[i].bias += q.bias;
-          sums[i].rms += q.rms;
-          sums[i].normalised_rms += q.normalised_rms;
-          sums[i].coverage_mean += q.coverage_mean;
-          sums[i].coverage_single += q.coverage_single;
+          for (const auto value : kMeans) sums[i].*value += q.*value;
           if (std::abs(q.largest) >= std::abs(sums[i].largest)) {
             sums[i].largest = q.largest;
             sums[i].largest_at_eps_dev = q.largest_at_eps_dev;
@@ -122,11 +121,7 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
       }
       if (seeds == 0) continue;
       for (QuantityComparison& q : mean.comparison.quantities) {
-        q.bias /= seeds;
-        q.rms /= seeds;
-        q.normalised_rms /= seeds;
-        q.coverage_mean /= seeds;
-        q.coverage_single /= seeds;
+        for (const auto value : kMeans) q.*value /= seeds;
       }
       means.push_back(mean);
     }

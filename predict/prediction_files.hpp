@@ -27,11 +27,7 @@ struct PredictedCurve {
   Prediction prediction;
 };
 /// The keys that come first; the prediction follows.
-constexpr auto fields_of(std::type_identity<PredictedCurve>) {
-  using C = PredictedCurve;
-  return std::tuple{Field{&C::model, "model"}, Field{&C::initial, "initial"}, Field{&C::seed, "seed"},
-                    Field{&C::file, "file"}};
-}
+GRAINLAW_SOME_FIELDS(PredictedCurve, model, initial, seed, file);
 
 /// One curve against one DEM run, or the mean over runs.
 struct CurveComparison {
@@ -65,12 +61,7 @@ struct FailedCurve {
   std::optional<std::uint64_t> seed;  ///< of the DEM run at whose rows it was wanted; none: equal steps
   std::string error;                  ///< one line
 };
-constexpr auto fields_of(std::type_identity<FailedCurve>) {
-  using C = FailedCurve;
-  return std::tuple{Field{&C::model, "model"}, Field{&C::initial, "initial"}, Field{&C::seed, "seed"},
-                    Field{&C::error, "error"}};
-}
-static_assert(tells_every_member<FailedCurve>());
+GRAINLAW_FIELDS(FailedCurve, model, initial, seed, error);
 
 /// What rehearsals say of one rung on a path.
 struct RehearsedError {
@@ -88,12 +79,7 @@ struct RehearsedModel {
   Rung model = Rung::evolution;
   RehearsedError P_star, s_par, F_par;
 };
-constexpr auto fields_of(std::type_identity<RehearsedModel>) {
-  using M = RehearsedModel;
-  return std::tuple{Field{&M::model, "model"}, Field{&M::P_star, "P_star"}, Field{&M::s_par, "s_par"},
-                    Field{&M::F_par, "F_par"}};
-}
-static_assert(tells_every_member<RehearsedModel>());
+GRAINLAW_FIELDS(RehearsedModel, model, P_star, s_par, F_par);
 
 /// Whose rehearsals speak for a path, and what they say.
 struct PathRehearsals {
@@ -104,16 +90,7 @@ struct PathRehearsals {
   double whole_curve_probability = 0;  ///< m/(m + 1)
   std::vector<RehearsedModel> models;  ///< of the rungs that have curves
 };
-constexpr auto fields_of(std::type_identity<PathRehearsals>) {
-  using R = PathRehearsals;
-  return std::tuple{Field{&R::kind, "kind"},
-                    Field{&R::paths, "paths"},
-                    Field{&R::of_kind, "of_kind"},
-                    Field{&R::outside, "outside"},
-                    Field{&R::whole_curve_probability, "whole_curve_probability"},
-                    Field{&R::models, "models"}};
-}
-static_assert(tells_every_member<PathRehearsals>());
+GRAINLAW_FIELDS(PathRehearsals, kind, paths, of_kind, outside, whole_curve_probability, models);
 
 struct PredictionFolder {
   std::string name;  ///< last part of the folder's path

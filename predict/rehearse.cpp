@@ -14,15 +14,6 @@ namespace {
 
 constexpr double kSameRow = 1e-3;  // of strain; runs of one path record a row within a time step of its strain
 
-struct RehearsedColumn {
-  double Observation::*measured;
-  double (*predicted)(const PredictedRow&);
-};
-constexpr std::array<RehearsedColumn, 3> kColumns{
-    {{&Observation::P_star, [](const PredictedRow& row) { return row.state.P; }},
-     {&Observation::s_par, [](const PredictedRow& row) { return row.s_par; }},
-     {&Observation::F_par, [](const PredictedRow& row) { return row.F_par; }}}};
-
 void check_runs(const RehearsalRuns& runs) {
   if (runs.runs.empty() || runs.runs.front().rows.empty())
     throw InvalidInput(fmt::format("rehearsal {}: has no run with rows", runs.name));
@@ -61,7 +52,8 @@ RehearsedRows rehearse(const CalibratedLaw& law, Rung rung, const RehearsalRuns&
   const auto judge = [&](const PredictedRow&, const std::vector<RowSlope>& slopes) {
     auto& variances = known.emplace_back();
     for (const Rehearsed quantity : kValues<Rehearsed>)
-      variances[static_cast<std::size_t>(quantity)] = bands.of_law(slopes, quantity);
+      variances[static_cast<std::size_t>(quantity)] =
+          bands.of_law(slopes, kComparedQuantities[static_cast<std::size_t>(quantity)].slope);
   };
   const Prediction prediction = along(first, {uncertain_parameters(law), true, judge});
   std::vector<Prediction> of_runs{prediction};
@@ -83,8 +75,8 @@ RehearsedRows rehearse(const CalibratedLaw& law, Rung rung, const RehearsalRuns&
       const double scatter = bands.scatter(row.nu, quantity);
       value.mean_variance = std::isfinite(scatter) ? scatter * scatter / static_cast<double>(runs.runs.size()) : 0;
       for (std::size_t r = 0; r < runs.runs.size(); ++r) {
-        value.differences.push_back(runs.runs[r].rows[i].*kColumns[q].measured -
-                                    kColumns[q].predicted(of_runs[r].rows[i]));
+        value.differences.push_back(runs.runs[r].rows[i].*kComparedQuantities[q].measured -
+                                    kComparedQuantities[q].predicted(of_runs[r].rows[i]));
       }
       // slopes end where the place of an event moves: the rows behind have no band and do not count
       const bool defined = std::isfinite(value.variance) && value.weight > 0 &&

@@ -13,7 +13,6 @@
 #include "model/files/csv_table.hpp"
 #include "model/files/digest.hpp"
 #include "model/files/output.hpp"
-#include "model/files/path_json.hpp"
 #include "model/files/series_csv.hpp"
 #include "model/vocabulary/error.hpp"
 #include "model/vocabulary/series_check.hpp"

@@ -4,7 +4,6 @@
 
 #include "dem/foreign/particle_series.hpp"
 #include "model/files/digest.hpp"
-#include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {

@@ -1,7 +1,6 @@
 #include "chain/planning/planned_spec.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "dem/runs/dataset_runs.hpp"

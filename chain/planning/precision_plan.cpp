@@ -18,9 +18,8 @@ double mean_factor(const PlanSettings& s) {
 
 /// g of the densities and the strain of `settings`.
 double steady_factor(const std::vector<SteadyScatter>& scatter, const PlanSettings& settings) {
-  const auto at = std::find_if(scatter.begin(), scatter.end(), [&](const SteadyScatter& s) {
-    return std::abs(s.shear_strain - settings.shear_strain) < 1e-9;
-  });
+  const auto at = std::ranges::find_if(
+      scatter, [&](const SteadyScatter& s) { return std::abs(s.shear_strain - settings.shear_strain) < 1e-9; });
   if (at == scatter.end()) throw Error("plan: no scatter is known for a shear strain that it considers");
   return std::sqrt(at->between + at->within / settings.densities);
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/vocabulary/enum_names.hpp"
+#include "model/vocabulary/fields.hpp"
 
 namespace grainlaw::chain {
 
@@ -24,6 +25,7 @@ struct PlanSettings {
   int densities = 0;              ///< D, at which shear tests start
   double shear_strain = 0;        ///< e, deviatoric strain of the shear tests [-]
 };
+GRAINLAW_FIELDS(PlanSettings, particles, packings, strain_rate, time_step_fraction, densities, shear_strain);
 
 /// Whether finished packings of one serve the other.
 bool same_packings(const PlanSettings& a, const PlanSettings& b);
@@ -33,6 +35,7 @@ struct SteadyScatter {
   double shear_strain = 0;
   double between = 0, within = 0;
 };
+GRAINLAW_FIELDS(SteadyScatter, shear_strain, between, within);
 
 enum class Cause { strain_rate, time_step, size };
 constexpr auto names_of(Cause) { return std::array{"strain_rate", "time_step", "size"}; }

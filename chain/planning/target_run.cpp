@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/files/fields_json.hpp"
 #include "model/files/path_json.hpp"
 
 namespace grainlaw::chain {
@@ -65,17 +66,9 @@ PlanSettings first_part(PlanSettings plan, const std::vector<PlanSettings>& fini
   return plan;
 }
 
-OrderedJson settings_to_json(const PlanSettings& s) {
-  return {{"particles", s.particles},     {"packings", s.packings},
-          {"strain_rate", s.strain_rate}, {"time_step_fraction", s.time_step_fraction},
-          {"densities", s.densities},     {"shear_strain", s.shear_strain}};
-}
-
 OrderedJson findings_to_json(const QuantityFindings& findings, const Scale& scale) {
   OrderedJson object{{"quantity", findings.quantity}, {"half_width", number_or_null(findings.half_width)}};
-  OrderedJson& scatter = object["scatter"] = OrderedJson::array();
-  for (const SteadyScatter& s : findings.scatter)
-    scatter.push_back({{"shear_strain", s.shear_strain}, {"between", s.between}, {"within", s.within}});
+  object["scatter"] = fields_to_json(findings.scatter);
   OrderedJson& biases = object["biases"] = OrderedJson::array();
   for (std::size_t i = 0; i < kCauses.size(); ++i) {
     const Bias& bias = findings.biases[i];
@@ -90,7 +83,7 @@ OrderedJson findings_to_json(const QuantityFindings& findings, const Scale& scal
 }
 
 OrderedJson round_to_json(const TargetRound& round) {
-  OrderedJson object{{"settings", settings_to_json(round.settings)},
+  OrderedJson object{{"settings", fields_to_json(round.settings)},
                      {"expected_error", number_or_null(round.expected_error)},
                      {"expected_seconds", number_or_null(round.expected_seconds)},
                      {"seconds", round.seconds},
@@ -200,7 +193,7 @@ OrderedJson plan_to_json(const TargetRun& run, const PrecisionTarget& target, co
   document["outcome"] = to_string(run.outcome);
   document["overrides"] = overrides;
   OrderedJson& pilot = document["pilot"];
-  pilot["settings"] = settings_to_json(run.pilot.scale.pilot);
+  pilot["settings"] = fields_to_json(run.pilot.scale.pilot);
   pilot["wanted_strain_rate"] = run.pilot.scale.wanted_rate;
   pilot["seconds_per_particle_step"] = run.pilot.rates.particle_step;
   pilot["seconds_per_relaxed_particle"] = run.pilot.rates.relaxed;
@@ -210,7 +203,7 @@ OrderedJson plan_to_json(const TargetRun& run, const PrecisionTarget& target, co
     quantities.push_back(findings_to_json(findings, run.pilot.scale));
   OrderedJson& candidates = document["candidates"] = OrderedJson::array();
   for (const Candidate& c : run.candidates) {
-    OrderedJson entry = settings_to_json(c.settings);
+    OrderedJson entry = fields_to_json(c.settings);
     entry["error"] = c.error;
     entry["seconds"] = c.seconds;
     entry["reaches"] = c.reaches;

@@ -30,26 +30,8 @@ struct BandCoverage {
   double single = 0;      ///< share of rows of the runs in the band of a single run
   bool whole = false;     ///< whether the mean of the runs is nowhere beyond the largest deviation of the others
 };
-constexpr auto fields_of(std::type_identity<BandCoverage>) {
-  using C = BandCoverage;
-  return std::tuple{Field{&C::path, "path"},
-                    Field{&C::kind, "kind"},
-                    Field{&C::packings, "packings"},
-                    Field{&C::model, "model"},
-                    Field{&C::quantity, "quantity"},
-                    Field{&C::rows, "rows"},
-                    Field{&C::of_kind, "of_kind"},
-                    Field{&C::degrees_of_freedom, "degrees_of_freedom"},
-                    Field{&C::tau, "tau"},
-                    Field{&C::bias, "bias"},
-                    Field{&C::bias_error, "bias_error"},
-                    Field{&C::rms, "rms"},
-                    Field{&C::without, "without"},
-                    Field{&C::mean, "mean"},
-                    Field{&C::single, "single"},
-                    Field{&C::whole, "whole"}};
-}
-static_assert(tells_every_member<BandCoverage>());
+GRAINLAW_FIELDS(BandCoverage, path, kind, packings, model, quantity, rows, of_kind, degrees_of_freedom, tau, bias,
+                bias_error, rms, without, mean, single, whole);
 
 /// Over all paths of a rung and a quantity, each counted alike.
 struct CoverageSummary {
@@ -61,20 +43,8 @@ struct CoverageSummary {
   double whole = 0;                          ///< share of paths wholly within the band of whole curves
   double promised_whole = 0;                 ///< m/(m + 1), mean over the paths
 };
-constexpr auto fields_of(std::type_identity<CoverageSummary>) {
-  using C = CoverageSummary;
-  return std::tuple{Field{&C::model, "model"},
-                    Field{&C::quantity, "quantity"},
-                    Field{&C::paths, "paths"},
-                    Field{&C::without, "without"},
-                    Field{&C::mean, "mean"},
-                    Field{&C::single, "single"},
-                    Field{&C::least_mean, "least_mean"},
-                    Field{&C::least_single, "least_single"},
-                    Field{&C::whole, "whole"},
-                    Field{&C::promised_whole, "promised_whole"}};
-}
-static_assert(tells_every_member<CoverageSummary>());
+GRAINLAW_FIELDS(CoverageSummary, model, quantity, paths, without, mean, single, least_mean, least_single, whole,
+                promised_whole);
 
 struct BandsStudy {
   std::string parameters;               ///< file

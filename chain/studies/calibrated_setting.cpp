@@ -22,7 +22,7 @@ bool same_packing(const PackingInfo& a, const PackingInfo& b) {
 }
 
 bool contains_packing(const Dataset& dataset, const PackingInfo& packing) {
-  return std::any_of(dataset.tests.begin(), dataset.tests.end(), [&](const DatasetTest& test) {
+  return std::ranges::any_of(dataset.tests, [&](const DatasetTest& test) {
     return test.record.role == Role::calibration && same_packing(test.record.packing, packing);
   });
 }

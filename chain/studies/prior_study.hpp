@@ -25,15 +25,8 @@ struct FewPackings {
   double unmoderated = 0;  ///< likewise, by the packings at hand alone
   double narrower = 0;     ///< median of moderated over unmoderated half width
 };
-constexpr auto fields_of(std::type_identity<FewPackings>) {
-  using F = FewPackings;
-  return std::tuple{Field{&F::data, "data"},         Field{&F::particles, "particles"},
-                    Field{&F::packings, "packings"}, Field{&F::calibrations, "calibrations"},
-                    Field{&F::ratio, "ratio"},       Field{&F::intervals, "intervals"},
-                    Field{&F::coverage, "coverage"}, Field{&F::unmoderated, "unmoderated"},
-                    Field{&F::narrower, "narrower"}};
-}
-static_assert(tells_every_member<FewPackings>());
+GRAINLAW_FIELDS(FewPackings, data, particles, packings, calibrations, ratio, intervals, coverage, unmoderated,
+                narrower);
 
 /// A parameter found by packings of one size and of another, each by all that there are.
 struct SizeEffect {
@@ -43,19 +36,8 @@ struct SizeEffect {
   double distance = 0;  ///< difference over the joint standard error
   bool biased = false;  ///< beyond Student's 95 % range
 };
-constexpr auto fields_of(std::type_identity<SizeEffect>) {
-  using S = SizeEffect;
-  return std::tuple{Field{&S::parameter, "parameter"},
-                    Field{&S::particles, "particles"},
-                    Field{&S::value, "value"},
-                    Field{&S::standard_error, "standard_error"},
-                    Field{&S::larger_particles, "larger_particles"},
-                    Field{&S::larger_value, "larger_value"},
-                    Field{&S::larger_standard_error, "larger_standard_error"},
-                    Field{&S::distance, "distance"},
-                    Field{&S::biased, "biased"}};
-}
-static_assert(tells_every_member<SizeEffect>());
+GRAINLAW_FIELDS(SizeEffect, parameter, particles, value, standard_error, larger_particles, larger_value,
+                larger_standard_error, distance, biased);
 
 struct PriorStudy {
   fit::VariancePrior prior;

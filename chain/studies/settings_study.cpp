@@ -28,8 +28,7 @@ bool scatters_alike(const SettingResult& a, const SettingResult& b) {
 
 /// Number of the quantities that count and that the setting shows.
 std::ptrdiff_t shown(const SettingResult& r) {
-  return std::count_if(r.errors.begin(), r.errors.end(),
-                       [](const QuantityError& e) { return e.in_error && std::isfinite(e.error); });
+  return std::ranges::count_if(r.errors, [](const QuantityError& e) { return e.in_error && std::isfinite(e.error); });
 }
 
 /// The quantities alone.

@@ -32,18 +32,7 @@ struct QuantityError {
   double sampling = 0;        ///< half width of the 95 % interval of the values themselves, relative as `error` [-]
   double chance = kMissing;   ///< standard error pooled over settings that scatter alike: a unit of errors [-]
 };
-constexpr auto fields_of(std::type_identity<QuantityError>) {
-  using E = QuantityError;
-  return std::tuple{Field{&E::quantity, "quantity"},
-                    Field{&E::in_error, "in_error"},
-                    Field{&E::value, "value"},
-                    Field{&E::error, "error"},
-                    Field{&E::standard_error, "standard_error"},
-                    Field{&E::half_width, "half_width"},
-                    Field{&E::sampling, "sampling"},
-                    Field{&E::chance, "chance"}};
-}
-static_assert(tells_every_member<QuantityError>());
+GRAINLAW_FIELDS(QuantityError, quantity, in_error, value, error, standard_error, half_width, sampling, chance);
 
 /// The same without the packing of column `c`, to first order (exactly where a value is the mean of the packings); not shown with
 /// fewer than three.

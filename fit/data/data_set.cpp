@@ -50,7 +50,7 @@ void check_material(const TestRecord& test, const TestRecord& first) {
 bool same_series(const TestRecord& a, const TestRecord& b) {
   const auto carries = [](const Observation& row) { return row.P_star != 0; };  // unjammed tests may well agree
   return a.rows.size() == b.rows.size() && std::any_of(a.rows.begin(), a.rows.end(), carries) &&
-         std::equal(a.rows.begin(), a.rows.end(), b.rows.begin(), [](const Observation& x, const Observation& y) {
+         std::ranges::equal(a.rows, b.rows, [](const Observation& x, const Observation& y) {
            return x.stress.tensor == y.stress.tensor && x.strain.tensor == y.strain.tensor;
          });
 }
@@ -85,7 +85,7 @@ void check_independence(const TestRecord& test, std::map<StressKey, Place>& seen
 }
 
 bool shears(const TestRecord& test) {
-  return std::any_of(test.path.segments.begin(), test.path.segments.end(), [](const PathSegment& s) {
+  return std::ranges::any_of(test.path.segments, [](const PathSegment& s) {
     return deviatoric_norm(s.direction.tensor) > 1e-12 * s.direction.tensor.norm();
   });
 }

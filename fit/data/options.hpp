@@ -29,21 +29,8 @@ struct CalibrationOptions {
   std::optional<VariancePrior> prior;  ///< by which errors are moderated; none: those of the packings at hand alone
 };
 /// What calibration.json keeps of them as `options`; the coupling stands beside them.
-constexpr auto fields_of(std::type_identity<CalibrationOptions>) {
-  using O = CalibrationOptions;
-  return std::tuple{Field{&O::iso_nu_min, "iso_nu_min"},
-                    Field{&O::rate_window, "rate_window"},
-                    Field{&O::steady_from, "steady_from"},
-                    Field{&O::steady_weight, "steady_weight"},
-                    Field{&O::stiffness_window, "stiffness_window"},
-                    Field{&O::lag_window, "lag_window"},
-                    Field{&O::max_step, "max_step"},
-                    Field{&O::pressure_scale, "pressure_scale"},
-                    Field{&O::stress_scale, "stress_scale"},
-                    Field{&O::fabric_scale, "fabric_scale"},
-                    Field{&O::loss, "loss"},
-                    Field{&O::starts, "starts"}};
-}
+GRAINLAW_SOME_FIELDS(CalibrationOptions, iso_nu_min, rate_window, steady_from, steady_weight, stiffness_window,
+                     lag_window, max_step, pressure_scale, stress_scale, fabric_scale, loss, starts);
 
 /// Throws InvalidInput naming the field that is not finite, not positive or out of order.
 void check(const CalibrationOptions& options);

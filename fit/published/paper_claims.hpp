@@ -23,18 +23,7 @@ struct Claim {
   double matters =
       std::numeric_limits<double>::quiet_NaN();  ///< difference that matters; NaN: of a sign or an identity
 };
-constexpr auto fields_of(std::type_identity<Claim>) {
-  using C = Claim;
-  return std::tuple{Field{&C::where, "where"},
-                    Field{&C::statement, "statement"},
-                    Field{&C::nu, "nu"},
-                    Field{&C::ours, "ours"},
-                    Field{&C::standard_error, "standard_error"},
-                    Field{&C::published, "published"},
-                    Field{&C::matters, "matters"},
-                    Field{&C::verdict, "verdict"}};
-}
-static_assert(tells_every_member<Claim>());
+GRAINLAW_FIELDS(Claim, where, statement, nu, ours, standard_error, published, matters, verdict);
 
 /// Half of the last digit that the paper prints, 0 for what is exact; the difference that matters.
 struct Printed {

@@ -50,8 +50,7 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
     const Estimate& estimate = law.estimates[i];
     const bool stands_for_itself = estimate.status != Status::fixed && !name.starts_with("anisotropy");
     if (!info.published || whose.empty() || !stands_for_itself) continue;
-    Verdict v{whose, info.name, std::nullopt, estimate.value, estimate.standard_error, *fields(published)[i], 0, 0,
-              0,     ""};
+    Verdict v{whose, info.name, std::nullopt, estimate.value, estimate.standard_error, *fields(published)[i]};
     judge(v, estimate.status != Status::not_identified, packings, estimate.degrees_of_freedom);
     all.push_back(v);
   }
@@ -66,11 +65,7 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
                 nu,
                 curve.of(law.parameters, nu),
                 standard_error(law, curve, nu),
-                curve.of(published, nu),
-                0,
-                0,
-                0,
-                ""};
+                curve.of(published, nu)};
       judge(v, true, packings, degrees_of_freedom(law, curve, nu));
       all.push_back(v);
     }

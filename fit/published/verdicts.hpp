@@ -25,22 +25,9 @@ struct Verdict {
   double distance = 0;        ///< difference over SE sqrt(n + 1); NaN without an error
   double range = 0;           ///< half of the 95 % range of the difference; NaN without an error [-]
   double matters = 0;         ///< the difference that matters, difference_that_matters() [-]
-  std::string verdict;        ///< "agrees", "inconclusive", "differs", "no error", "not identified", "another material"
+  std::string verdict{};      ///< "agrees", "inconclusive", "differs", "no error", "not identified", "another material"
 };
-constexpr auto fields_of(std::type_identity<Verdict>) {
-  using V = Verdict;
-  return std::tuple{Field{&V::mode, "mode"},
-                    Field{&V::quantity, "quantity"},
-                    Field{&V::nu, "nu"},
-                    Field{&V::ours, "ours"},
-                    Field{&V::standard_error, "standard_error"},
-                    Field{&V::published, "published"},
-                    Field{&V::distance, "distance"},
-                    Field{&V::range, "range"},
-                    Field{&V::matters, "matters"},
-                    Field{&V::verdict, "verdict"}};
-}
-static_assert(tells_every_member<Verdict>());
+GRAINLAW_FIELDS(Verdict, mode, quantity, nu, ours, standard_error, published, distance, range, matters, verdict);
 
 /// The modes besides the calibration's own, and how all of them compare with what was published.
 struct ModeComparison {

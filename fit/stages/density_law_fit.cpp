@@ -94,10 +94,11 @@ const std::array<ShearQuantity, 4> kShearQuantities{{
 }};
 
 void settle_constant_law(StageFit& fit, const std::string& law) {
-  std::vector<NamedEstimate>& all = fit.stage.estimates;
-  const auto at = std::find_if(all.begin(), all.end(), [&](const NamedEstimate& e) { return e.name == law + ".Q_c"; });
-  if (at == all.end() || at->estimate.status != Status::at_bound || at->estimate.value != 0) return;
-  Estimate& alpha = (at + 1)->estimate;
+  const Eigen::Index at = fit.find(law + ".Q_c");
+  if (at < 0) return;
+  const auto Q_c = fit.stage.estimates.begin() + at;
+  if (Q_c->estimate.status != Status::at_bound || Q_c->estimate.value != 0) return;
+  Estimate& alpha = (Q_c + 1)->estimate;
   alpha.status = Status::fixed;
   alpha.note = "without effect while Q_c is 0";
 }

@@ -24,15 +24,8 @@ constexpr std::array<Pair, 2> kPairs{{
     {"fabric_max", "fabric_rate", &LawParameters<double>::fabric_rate, false},
 }};
 
-Eigen::Index index_of(const StageFit& fit, const std::string& name) {
-  for (std::size_t k = 0; k < fit.stage.estimates.size(); ++k) {
-    if (fit.stage.estimates[k].name == name) return static_cast<Eigen::Index>(k);
-  }
-  return -1;
-}
-
 void withdraw(StageFit& fit, const std::string& law, const std::string& note) {
-  if (index_of(fit, law + ".Q_limit") < 0) return;  // held, the stage before has said why
+  if (fit.find(law + ".Q_limit") < 0) return;  // held, the stage before has said why
   for (const char* part : {".Q_limit", ".Q_c", ".alpha"}) fit.mark_not_identified(law + part, note);
 }
 
@@ -67,7 +60,7 @@ std::vector<double> saturating_densities(const StageFit& fit, const std::vector<
 void judge_pair(StageFit& fit, const std::vector<Trajectory>& trajectories, const LawParameters<double>& law,
                 const Pair& pair, const CalibrationOptions& options) {
   // What a change of all rates by the same factor would do.
-  const Eigen::Index i = index_of(fit, std::string(pair.rate) + ".Q_limit");
+  const Eigen::Index i = fit.find(std::string(pair.rate) + ".Q_limit");
   if (i < 0) return;  // held
   const Solution& solution = fit.solution;
   const double Q_limit = solution.x(i), Q_c = solution.x(i + 1), alpha = solution.x(i + 2);
@@ -104,7 +97,7 @@ void check_evolution(const std::vector<Trajectory>& trajectories, const LawParam
 }
 
 void check_coupling(const std::string& name, const std::string& remedy, StageFit& fit) {
-  const Eigen::Index k = index_of(fit, name);
+  const Eigen::Index k = fit.find(name);
   const double scale = std::max(std::abs(fit.solution.x(k)), parameter_table()[parameter_index(name)].start);
   const bool felt = fit.solution.weight.cwiseProduct(fit.solution.jacobian.col(k)).norm() * scale >= kFelt;
   if (!felt || fit.influence.row(k).norm() > kVague * scale) {

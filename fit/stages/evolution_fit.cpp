@@ -113,7 +113,7 @@ double least_nu(const std::vector<Trajectory>& trajectories) {
 }  // namespace
 
 bool contains_anisotropy(const std::vector<Trajectory>& trajectories) {
-  return std::any_of(trajectories.begin(), trajectories.end(), [](const Trajectory& t) {
+  return std::ranges::any_of(trajectories, [](const Trajectory& t) {
     return !t.axes.empty() && !t.rows.empty() && std::abs(t.direction.dx) * t.rows.back().e > kVolumetricPath;
   });
 }

@@ -13,9 +13,8 @@ ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories) {
   const auto constant_volume = [](const Trajectory& t) {
     return std::abs(t.direction.dx) <= 1e-12 && t.direction.de > 0;
   };
-  const bool known = std::any_of(trajectories.begin(), trajectories.end(), [&](const Trajectory& t) {
-    return constant_volume(t) && is_like_D2(t.direction.lode);
-  });
+  const bool known = std::ranges::any_of(
+      trajectories, [&](const Trajectory& t) { return constant_volume(t) && is_like_D2(t.direction.lode); });
   ByLodeAngle sorted;
   for (const Trajectory& t : trajectories) {
     const bool other = known && constant_volume(t) && !is_like_D2(t.direction.lode);

@@ -110,11 +110,10 @@ std::vector<Trajectory> at_own_densities(std::vector<Trajectory> all, const LawP
 /// Whether none of the fabric may lag, kappa being on its bound or within its 95 % interval of it: then the rate lambda at which it
 /// follows need not be known.
 bool lag_may_be_none(const StageFit& fit) {
-  for (const auto& [name, kappa] : fit.stage.estimates) {
-    if (name == "memory.kappa")
-      return !(kappa.value + kappa.half_width() < parameter_table()[parameter_index(name)].upper);
-  }
-  return false;
+  const Eigen::Index at = fit.find("memory.kappa");
+  if (at < 0) return false;
+  const Estimate& kappa = fit.stage.estimates[static_cast<std::size_t>(at)].estimate;
+  return !(kappa.value + kappa.half_width() < parameter_table()[parameter_index("memory.kappa")].upper);
 }
 
 /// Lower end of the 95 % interval of a standard error, over it: with two packings an error is chance by a factor of two.

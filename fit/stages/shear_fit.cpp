@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fit/data/shear_rows.hpp"
 #include "model/reduced_law.hpp"

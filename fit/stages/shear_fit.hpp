@@ -25,26 +25,10 @@ struct ShearFit {
   double steady_since_s = 0, steady_since_F = 0,
          steady_since_P = 0;  ///< detected onsets, steady_onset(); NaN: none [-]
 };
-/// The keys that come first; the estimates follow. The Lode angle is that of the mode.
-constexpr auto fields_of(std::type_identity<ShearFit>) {
-  using S = ShearFit;
-  return std::tuple{Field{&S::test, "test"},
-                    Field{&S::mode, "mode"},
-                    Field{&S::seed, "seed"},
-                    Field{&S::nu, "nu"},
-                    Field{&S::eps_dev_max, "eps_dev_max"},
-                    Field{&S::s_0, "s_0"},
-                    Field{&S::F_0, "F_0"},
-                    Field{&S::s_steady, "s_steady"},
-                    Field{&S::F_steady, "F_steady"},
-                    Field{&S::C_star, "C_star"},
-                    Field{&S::rattler_fraction, "rattler_fraction"},
-                    Field{&S::P_star, "P_star"},
-                    Field{&S::steady_from, "steady_from"},
-                    Field{&S::steady_since_s, "steady_since_s"},
-                    Field{&S::steady_since_F, "steady_since_F"},
-                    Field{&S::steady_since_P, "steady_since_P"}};
-}
+/// All but the Lode angle, which is that of the mode.
+GRAINLAW_SOME_FIELDS(ShearFit, test, mode, seed, nu, eps_dev_max, s_0, F_0, s_steady, F_steady, C_star,
+                     rattler_fraction, P_star, steady_from, steady_since_s, steady_since_F, steady_since_P, s_max,
+                     beta_s, F_max, beta_F);
 
 /// The problem of one quantity: parameters (limit, rate), one block.
 struct SaturationProblem : Problem {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "fit/statistics/covariance.hpp"
@@ -205,8 +204,7 @@ void profile_doubtful(const Problem& problem, int threads, const RunControl& con
     profile.points.push_back({best, 0});
     if (best > p.lower) profile.lower = end_of(cost, p, best, step, p.lower, solution.final_cost, unit, profile.points);
     if (best < p.upper) profile.upper = end_of(cost, p, best, step, p.upper, solution.final_cost, unit, profile.points);
-    std::sort(profile.points.begin(), profile.points.end(),
-              [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });
+    std::ranges::sort(profile.points, {}, &ProfilePoint::value);
     profile.experiment = estimate.note;
     if (estimate.status != Status::not_identified) profile.experiment = most_telling_test(problem.blocks, solution, k);
     fit.stage.profiles.push_back(profile);

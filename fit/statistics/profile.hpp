@@ -4,7 +4,6 @@
 // standard error where the cost is a parabola, and the honest one where it is not: docs/theory/fit.md, section Profiles.
 
 #include <string>
-#include <vector>
 
 #include "fit/statistics/stage_fit.hpp"
 

@@ -17,11 +17,7 @@ struct StartSearch {
   int tried = 1, at_minimum = 1;                                ///< starts; those that ended at the lowest cost
   double next_cost = std::numeric_limits<double>::quiet_NaN();  ///< of the next minimum; NaN: there is none
 };
-constexpr auto fields_of(std::type_identity<StartSearch>) {
-  using S = StartSearch;
-  return std::tuple{Field{&S::tried, "tried"}, Field{&S::at_minimum, "at_minimum"}, Field{&S::next_cost, "next_cost"}};
-}
-static_assert(tells_every_member<StartSearch>());
+GRAINLAW_FIELDS(StartSearch, tried, at_minimum, next_cost);
 
 /// The best of `starts` (at least 1) solutions of the problem by its loss, and in `search` how many of them ended there.
 Solution minimise(const Problem& problem, int starts, int threads, const std::string& stage, const RunControl& control,

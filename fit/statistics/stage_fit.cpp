@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fit/statistics/covariance.hpp"
 #include "fit/statistics/huber_loss.hpp"
@@ -23,9 +22,8 @@ std::vector<TestResidual> misfit_per_test(const std::vector<ResidualBlock>& bloc
     for (const Channel& channel : block.channels) {
       const Eigen::VectorXd d = solution.misfit.segment(first + channel.first, channel.rows);
       const Eigen::VectorXd w = solution.weight.segment(first + channel.first, channel.rows);
-      auto at = std::find_if(tests.begin(), tests.end(), [&](const TestResidual& t) {
-        return t.test == block.test && t.quantity == channel.quantity;
-      });
+      auto at = std::ranges::find_if(
+          tests, [&](const TestResidual& t) { return t.test == block.test && t.quantity == channel.quantity; });
       if (at == tests.end()) {
         at = tests.insert(tests.end(), TestResidual{});
         at->test = block.test;
@@ -69,23 +67,22 @@ ClusterCovariance covariance_of(const Solution& solution) {
                             cluster, free, solution.curvature);
 }
 
-std::size_t position(const Stage& stage, const std::string& name) {
-  const auto at = std::find_if(stage.estimates.begin(), stage.estimates.end(),
-                               [&](const NamedEstimate& e) { return e.name == name; });
-  if (at == stage.estimates.end()) throw Error("stage " + stage.name + " has no parameter " + name);
-  return static_cast<std::size_t>(at - stage.estimates.begin());
-}
-
 }  // namespace
 
+Eigen::Index StageFit::find(const std::string& name) const {
+  const auto at = std::ranges::find(stage.estimates, name, &NamedEstimate::name);
+  return at == stage.estimates.end() ? -1 : at - stage.estimates.begin();
+}
+
 void StageFit::mark_not_identified(const std::string& name, const std::string& note) {
-  const std::size_t k = position(stage, name);
-  Estimate& estimate = stage.estimates[k].estimate;
+  const Eigen::Index k = find(name);
+  if (k < 0) throw Error("stage " + stage.name + " has no parameter " + name);
+  Estimate& estimate = stage.estimates[static_cast<std::size_t>(k)].estimate;
   estimate.status = Status::not_identified;
   estimate.standard_error = kUndefined;
   estimate.note = note;
   estimate.degrees_of_freedom = kUndefined;
-  influence.row(static_cast<Eigen::Index>(k)).setZero();
+  influence.row(k).setZero();
 }
 
 StageFit fit_stage(const std::string& name, const std::string& window, const Problem& problem,

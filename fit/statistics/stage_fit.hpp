@@ -31,29 +31,14 @@ struct TestResidual {
   double bias = 0;          ///< mean of model - data
   double max_abs_data = 0;  ///< to normalise by
 };
-constexpr auto fields_of(std::type_identity<TestResidual>) {
-  using R = TestResidual;
-  return std::tuple{Field{&R::test, "test"},
-                    Field{&R::quantity, "quantity"},
-                    Field{&R::in_cost, "in_cost"},
-                    Field{&R::rows, "rows"},
-                    Field{&R::rows_excluded, "rows_excluded"},
-                    Field{&R::rows_lightened, "rows_lightened"},
-                    Field{&R::rms, "rms"},
-                    Field{&R::bias, "bias"},
-                    Field{&R::max_abs_data, "max_abs_data"}};
-}
-static_assert(tells_every_member<TestResidual>());
+GRAINLAW_FIELDS(TestResidual, test, quantity, in_cost, rows, rows_excluded, rows_lightened, rms, bias, max_abs_data);
 
 /// Cost of a stage with one parameter held and all others fitted again, profile.hpp.
 struct ProfilePoint {
   double value = 0;   ///< of the parameter
   double excess = 0;  ///< of the cost, in units of that at the ends of the 95 % interval; NaN: model not defined
 };
-constexpr auto fields_of(std::type_identity<ProfilePoint>) {
-  return std::tuple{Field{&ProfilePoint::value, "value"}, Field{&ProfilePoint::excess, "excess"}};
-}
-static_assert(tells_every_member<ProfilePoint>());
+GRAINLAW_FIELDS(ProfilePoint, value, excess);
 struct Profile {
   std::string parameter;
   std::string reason;                ///< why it was looked at
@@ -62,11 +47,7 @@ struct Profile {
   std::string experiment;            ///< what would narrow it; may be empty
 };
 /// But the experiment, a key only where there is one.
-constexpr auto fields_of(std::type_identity<Profile>) {
-  using P = Profile;
-  return std::tuple{Field{&P::parameter, "parameter"}, Field{&P::reason, "reason"}, Field{&P::lower, "lower"},
-                    Field{&P::upper, "upper"}, Field{&P::points, "points"}};
-}
+GRAINLAW_SOME_FIELDS(Profile, parameter, reason, lower, upper, points);
 
 /// What a stage says.
 struct Stage {
@@ -83,20 +64,8 @@ struct Stage {
   std::vector<NamedEstimate> estimates;  ///< of the parameters free in this stage; a later stage may refine them
 };
 /// The keys that come first; profiles, estimates and tests follow.
-constexpr auto fields_of(std::type_identity<Stage>) {
-  using S = Stage;
-  return std::tuple{Field{&S::name, "name"},
-                    Field{&S::window, "window"},
-                    Field{&S::residuals, "residuals"},
-                    Field{&S::free_parameters, "free_parameters"},
-                    Field{&S::iterations, "iterations"},
-                    Field{&S::initial_cost, "initial_cost"},
-                    Field{&S::final_cost, "final_cost"},
-                    Field{&S::termination, "termination"},
-                    Field{&S::converged, "converged"},
-                    Field{&S::seconds, "seconds"},
-                    Field{&S::starts, "starts"}};
-}
+GRAINLAW_SOME_FIELDS(Stage, name, window, residuals, free_parameters, iterations, initial_cost, final_cost, termination,
+                     converged, seconds, starts);
 
 struct StageFit {
   Stage stage;                ///< its estimates are those of the free parameters, in their order
@@ -104,6 +73,9 @@ struct StageFit {
   Solution solution;
 
   Eigen::MatrixXd covariance() const { return influence * influence.transpose(); }
+
+  /// Place of a free parameter; -1: it is none.
+  Eigen::Index find(const std::string& name) const;
 
   /// Withdraws the claim on `name`: no error, `note` says which data would determine it.
   void mark_not_identified(const std::string& name, const std::string& note);

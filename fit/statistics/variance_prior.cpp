@@ -1,6 +1,5 @@
 #include "fit/statistics/variance_prior.hpp"
 
-#include <algorithm>
 #include <boost/math/special_functions/digamma.hpp>
 #include <boost/math/special_functions/trigamma.hpp>
 #include <cmath>

@@ -9,8 +9,6 @@
 // that. Source, limits and coverage: docs/theory/fit.md, section Moderated variances.
 
 #include <Eigen/Core>
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include "model/calibrated_law.hpp"

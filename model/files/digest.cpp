@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "model/files/reading.hpp"
-#include "model/vocabulary/error.hpp"
 
 namespace grainlaw {
 namespace {

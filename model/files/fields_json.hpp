@@ -2,7 +2,6 @@
 // Structs as JSON by the table of their fields (model/vocabulary/fields.hpp): numbers (null where NaN), words, names of enums,
 // arrays, and structs that have tables themselves. Fields that are free have no key, those that are fixed one in runs alone.
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 // and guesses nothing about a number: what is none stays named, and is refused by whoever needs it.
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

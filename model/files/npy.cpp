@@ -6,7 +6,6 @@
 #include <bit>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
 
 #include "model/files/csv_table.hpp"
 #include "model/files/one_line.hpp"

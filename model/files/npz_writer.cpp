@@ -1,7 +1,6 @@
 #include "model/files/npz_writer.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <zip.h>
 
 #include <bit>

@@ -17,6 +17,7 @@
 
 #include "grainlaw_schemas.hpp"
 #include "model/files/one_line.hpp"
+#include "model/vocabulary/enum_names.hpp"
 #include "model/vocabulary/error.hpp"
 #include "model/vocabulary/nearest_word.hpp"
 
@@ -155,7 +156,7 @@ std::string wrong_value(const Json& value, const Json& s) {
 
 bool all_different(const Json& array) {
   std::set<std::string> seen;
-  return std::all_of(array.begin(), array.end(), [&](const Json& element) {
+  return std::ranges::all_of(array, [&](const Json& element) {
     return seen.insert(element.dump(-1, ' ', false, Json::error_handler_t::replace)).second;
   });
 }
@@ -190,27 +191,12 @@ Json without_unique_items(Json node) {
   return node;
 }
 
-struct Schemas {
-  std::map<Schema, Json> whole;
-
-  Schemas() {
-    for (const auto& [which, file] : {std::pair{Schema::spec, "spec.schema.json"},
-                                      {Schema::path, "path.schema.json"},
-                                      {Schema::test, "test.schema.json"},
-                                      {Schema::dataset, "dataset.schema.json"},
-                                      {Schema::parameters, "parameters.schema.json"},
-                                      {Schema::study, "study.schema.json"},
-                                      {Schema::study_settings, "study_settings.schema.json"},
-                                      {Schema::plan, "plan.schema.json"},
-                                      {Schema::prior, "prior.schema.json"},
-                                      {Schema::mapping, "import.schema.json"}}) {
-      whole[which] = load(file);
-    }
-  }
-};
-
-const Schemas& schemas_built_in() {
-  static const Schemas all;
+const std::map<Schema, Json>& schemas_built_in() {
+  static const std::map<Schema, Json> all = [] {
+    std::map<Schema, Json> whole;
+    for (const Schema which : kValues<Schema>) whole[which] = load(std::string(to_string(which)) + ".schema.json");
+    return whole;
+  }();
   return all;
 }
 
@@ -262,7 +248,7 @@ std::vector<std::string> violation_texts(const Json& document, Schema which, con
 
 }  // namespace
 
-const Json& schema(Schema which) { return schemas_built_in().whole.at(which); }
+const Json& schema(Schema which) { return schemas_built_in().at(which); }
 
 std::vector<std::string> schema_violations(const Json& document, Schema which, const std::string& name) {
   std::vector<Place> places;

@@ -2,6 +2,7 @@
 // Documents against the draft-07 schemas of docs/schemas, which are built into the program. What a message tells the
 // user to give comes from the schema: type, range and description of the key.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,11 @@
 namespace grainlaw {
 
 enum class Schema { spec, path, test, dataset, parameters, study, study_settings, plan, prior, mapping };
+/// As the files docs/schemas/NAME.schema.json are called.
+constexpr auto names_of(Schema) {
+  return std::array{"spec",  "path",           "test", "dataset", "parameters",
+                    "study", "study_settings", "plan", "prior",   "import"};
+}
 
 /// The schema with every reference replaced by what it refers to.
 const Json& schema(Schema which);

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "model/files/column.hpp"
-#include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
 #include "model/vocabulary/series_check.hpp"
 

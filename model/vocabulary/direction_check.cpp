@@ -36,7 +36,7 @@ Deviator<double> stress_ratio(const Observation& o) {
 
 std::optional<Misdirection> misdirection(const std::vector<Observation>& rows,
                                          const std::vector<StraightSegment>& segments, double scatter) {
-  const auto first = std::find_if(segments.begin(), segments.end(), [](const StraightSegment& s) {
+  const auto first = std::ranges::find_if(segments, [](const StraightSegment& s) {
     return deviatoric_norm(s.direction.tensor) > 1e-12 * s.direction.tensor.norm();
   });
   if (first == segments.end() || !first->spin.isZero(0)) return std::nullopt;

@@ -3,6 +3,7 @@
 //   constexpr auto fields_of(std::type_identity<Material>) {
 //     return std::tuple{Field{&Material::density, "density", "kg/m^3", "rho", "mass density of the spheres"}, ...};
 //   }
+// or, where all that is said of a field is its name: GRAINLAW_FIELDS(PathTraits, nu_min, nu_max, ...);
 // From it follow the columns of a series and the numbers of a checkpoint, the keys of JSON files and of the run store, and what
 // docs/formats.md says of them. Plain compile-time data: a new member is one line here, and what writes and reads follows.
 
@@ -72,3 +73,22 @@ consteval bool tells_every_member() {
 }
 
 }  // namespace grainlaw
+
+/// The table of T, each field called as its member is: of all members, or of some; 32 at most.
+#define GRAINLAW_FIELDS(T, ...)         \
+  GRAINLAW_SOME_FIELDS(T, __VA_ARGS__); \
+  static_assert(::grainlaw::tells_every_member<T>())
+#define GRAINLAW_SOME_FIELDS(T, ...)                                  \
+  constexpr auto fields_of(std::type_identity<T>) {                   \
+    return std::tuple{GRAINLAW_TWICE(GRAINLAW_EACH(T, __VA_ARGS__))}; \
+  }                                                                   \
+  static_assert(::grainlaw::HasFields<T>)
+#define GRAINLAW_EACH(T, member, ...) \
+  ::grainlaw::Field{&T::member, #member}, __VA_OPT__(GRAINLAW_NEXT GRAINLAW_PARENTHESES(T, __VA_ARGS__))
+#define GRAINLAW_NEXT() GRAINLAW_EACH
+#define GRAINLAW_PARENTHESES ()
+#define GRAINLAW_TWICE(...) GRAINLAW_TWICE_2(GRAINLAW_TWICE_2(__VA_ARGS__))
+#define GRAINLAW_TWICE_2(...) GRAINLAW_TWICE_4(GRAINLAW_TWICE_4(__VA_ARGS__))
+#define GRAINLAW_TWICE_4(...) GRAINLAW_TWICE_8(GRAINLAW_TWICE_8(__VA_ARGS__))
+#define GRAINLAW_TWICE_8(...) GRAINLAW_TWICE_16(GRAINLAW_TWICE_16(__VA_ARGS__))
+#define GRAINLAW_TWICE_16(...) __VA_ARGS__

@@ -139,8 +139,7 @@ bool law_decides(const PathSegment& segment) {
 }
 
 bool law_decides(const Path& path) {
-  return std::any_of(path.segments.begin(), path.segments.end(),
-                     [](const PathSegment& segment) { return law_decides(segment); });
+  return std::ranges::any_of(path.segments, [](const PathSegment& segment) { return law_decides(segment); });
 }
 
 StrainRate direction_of(Mode mode, const std::string& axes, bool reverse) {

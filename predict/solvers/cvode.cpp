@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 
-#include "model/vocabulary/error.hpp"
 #include "predict/solvers/sundials.hpp"
 
 namespace grainlaw::predict {
@@ -52,7 +51,6 @@ struct Cvode::Impl : OdeCallbacks {
   SolverStatistics finished;  // work before the last start()
 
   static Impl& of(void* user) { return static_cast<Impl&>(*static_cast<OdeCallbacks*>(user)); }
-  OdeCallbacks* user() { return this; }
 
   static int evaluate_sensitivity_rate(int, realtype t, N_Vector y, N_Vector, int k, N_Vector s, N_Vector rate,
                                        void* user, N_Vector, N_Vector) {
@@ -72,10 +70,6 @@ struct Cvode::Impl : OdeCallbacks {
       return kGiveUp;
     }
     return std::isfinite(*value) ? 0 : kGiveUp;
-  }
-
-  void require(int flag, const char* call) const {
-    if (flag != CV_SUCCESS) throw Error(fmt::format("{} failed with flag {}: {}", call, flag, message));
   }
 
   SolverStatistics since_start() const {

@@ -41,12 +41,6 @@ struct RungeKutta::Impl : OdeCallbacks {
   static void release(void* memory) { ERKStepFree(&memory); }
   Owned<void*, release> memory;
   long rhs_evaluations = 0, steps = 0;
-
-  OdeCallbacks* user() { return this; }
-
-  void require(int flag, const char* call) const {
-    if (flag != ARK_SUCCESS) throw Error(fmt::format("{} failed with flag {}: {}", call, flag, message));
-  }
 };
 
 RungeKutta::RungeKutta(std::size_t size, int order, double relative, double absolute, long max_steps, OdeRate rate,

@@ -68,6 +68,13 @@ struct OdeCallbacks {
   bool warned = false;        ///< whether it warned: of an integration there is one warning only, t + h == t
   std::exception_ptr thrown;  ///< by the user's functions; must not cross the C boundary
 
+  OdeCallbacks* user() { return this; }  ///< what the callbacks are given
+
+  /// Throws Error unless a call of the library returned 0.
+  void require(int flag, const char* call) const {
+    if (flag != 0) throw Error(fmt::format("{} failed with flag {}: {}", call, flag, message));
+  }
+
   /// The library's return value for `call`, which writes `size` numbers to `out`.
   template <class Call>
   int guarded(const double* out, Call&& call) {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "model/files/fields_json.hpp"
 #include "predict/predict.hpp"
 
 namespace grainlaw::predict {
@@ -45,18 +46,11 @@ OrderedJson values_to_json(const LawParameters<double>& parameters) {
   return values;
 }
 
-OrderedJson point_to_json(const WorkPoint& point) {
-  return {
-      {"integrator", to_string(point.integrator)}, {"accuracy", point.accuracy}, {"error", number_or_null(point.error)},
-      {"rhs_evaluations", point.rhs_evaluations},  {"steps", point.steps},       {"microseconds", point.microseconds}};
-}
-
 OrderedJson panel_to_json(const WorkPrecision& study) {
-  OrderedJson points = OrderedJson::array(), quickest_points = OrderedJson::array();
-  for (const WorkPoint& point : study.points) points.push_back(point_to_json(point));
+  OrderedJson quickest_points = OrderedJson::array();
   for (const Integrator& integrator : kIntegrators) {
     if (const WorkPoint* point = quickest(study, kWantedError, &integrator))
-      quickest_points.push_back(point_to_json(*point));
+      quickest_points.push_back(fields_to_json(*point));
   }
   return {{"path", study.path.name},
           {"description", study.path.description},
@@ -65,7 +59,7 @@ OrderedJson panel_to_json(const WorkPrecision& study) {
            {{"P_star", study.end.P}, {"s_dev", study.end.sigma.norm() / study.end.P}, {"F_dev", study.end.F.norm()}}},
           {"reference_disagreement", number_or_null(study.reference_disagreement)},
           {"quickest_within_1e-6", quickest_points},
-          {"points", points}};
+          {"points", fields_to_json(study.points)}};
 }
 
 OrderedJson batch_to_json(const IntegratorStudy& study) {

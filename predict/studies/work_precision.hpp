@@ -2,11 +2,11 @@
 // Work against precision: paths of three kinds by every integrator at every accuracy, each against the same path at a
 // tolerance of 1e-13.
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "model/parameters.hpp"
+#include "model/vocabulary/fields.hpp"
 #include "model/vocabulary/run_control.hpp"
 #include "predict/studies/walker.hpp"
 
@@ -29,6 +29,7 @@ struct WorkPoint {
   long rhs_evaluations = 0, steps = 0;
   double microseconds = 0;  ///< of one path, the least of the repeats
 };
+GRAINLAW_FIELDS(WorkPoint, integrator, accuracy, error, rhs_evaluations, steps, microseconds);
 
 struct WorkPrecision {
   StudyPath path;
