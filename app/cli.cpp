@@ -52,30 +52,24 @@ void add_common(CLI::App& command, Common& common) {
 }
 
 void add_threads(CLI::App& command, Common& common) {
-  command.add_option("--threads", common.threads, "threads of all runs together; results do not depend on it")
-      ->check(between(1, 1024))
-      ->type_name("N")
+  add_number(command, "--threads", common.threads, 1, 1024, "N",
+             "threads of all runs together; results do not depend on it")
       ->default_str("all cores");
 }
 
 /// Of the commands that run DEM.
 void add_lammps(CLI::App& command, Common& common) {
-  command
-      .add_option("--lammps", common.lammps, "executable of LAMMPS, for \"engine\": \"lammps\"; default: lmp on PATH")
-      ->type_name("FILE");
-  command
-      .add_option("--launcher", common.launcher,
-                  "words before it, parted by blanks, as \"mpirun -n 2\"; each run of --threads N starts them")
-      ->type_name("WORDS");
+  add_value(command, "--lammps", common.lammps, "FILE",
+            "executable of LAMMPS, for \"engine\": \"lammps\"; default: lmp on PATH");
+  add_value(command, "--launcher", common.launcher, "WORDS",
+            "words before it, parted by blanks, as \"mpirun -n 2\"; each run of --threads N starts them");
 }
 void add_checkpoints(CLI::App& command, Common& common) {
   command.add_flag(
       "--resume,!--no-resume", common.resume,
       "go on from the checkpoints of interrupted runs, as is done without it; --no-resume starts them anew");
-  command
-      .add_option("--checkpoint", common.checkpoint_interval, "seconds between two checkpoints of a run; 0: every step")
-      ->check(between(0, 1e6))
-      ->type_name("SECONDS")
+  add_number(command, "--checkpoint", common.checkpoint_interval, 0, 1e6, "SECONDS",
+             "seconds between two checkpoints of a run; 0: every step")
       ->capture_default_str();
 }
 

@@ -12,7 +12,7 @@ Task declare_completion(CLI::App& command) {
   const auto shell = std::make_shared<Shell>();
   const auto file = std::make_shared<std::filesystem::path>();
   add_choice<Shell>(command, "SHELL", *shell, "whose script is wanted")->required();
-  command.add_option("-o,--output", *file, "file of the script; default: standard output")->type_name("FILE");
+  add_value(command, "-o,--output", *file, "FILE", "file of the script; default: standard output");
   return [shell, file, root = command.get_parent()](Session&) {
     write_as_named(file->empty() ? "-" : *file, completion_script(*root, *shell));
     return ExitCode::ok;
@@ -21,9 +21,7 @@ Task declare_completion(CLI::App& command) {
 
 Task declare_man(CLI::App& command) {
   const auto folder = std::make_shared<std::filesystem::path>();
-  command.add_option("DIR", *folder, "folder for grainlaw.1 and the pages of the commands")
-      ->required()
-      ->type_name("DIR");
+  add_value(command, "DIR", *folder, "DIR", "folder for grainlaw.1 and the pages of the commands")->required();
   return [folder, root = command.get_parent()](Session&) {
     write_manual(*root, *folder);
     return ExitCode::ok;

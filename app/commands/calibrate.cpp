@@ -79,57 +79,46 @@ ExitCode calibrate(const CalibrateOptions& options, Session& session) {
 
 Task declare_calibrate(CLI::App& command) {
   const auto options = std::make_shared<CalibrateOptions>();
-  command.add_option("SPEC", options->spec, "SPEC.json; may be left out with --dataset")->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder of the calibration")->required()->type_name("DIR");
-  command.add_option("--dataset", options->dataset, "fit this data set without running DEM")->type_name("DIR");
+  add_value(command, "SPEC", options->spec, "FILE", "SPEC.json; may be left out with --dataset");
+  add_value(command, "-o,--output", options->output, "DIR", "folder of the calibration")->required();
+  add_value(command, "--dataset", options->dataset, "DIR", "fit this data set without running DEM");
   add_dry_run(command, options->dry_run);
   command.add_flag("--wait", options->wait,
                    "simulate nothing: wait for runs that others make, and name those that are missing");
-  CLI::Option* target = command.add_option(
-      "--target-error", options->target_error,
-      "plan the cheapest runs after which the prediction along --for is known to this, e.g. 0.02: half width of its "
-      "95 % band with what rate, step and size do, over the largest value; overrides N, seeds, rate, step, densities "
-      "and shear strain of SPEC");
-  target->check(between(1e-4, 1))->type_name("ERROR");
-  command.add_option("--for", options->target_path, "PATH.json of that prediction")->needs(target)->type_name("FILE");
+  CLI::Option* target = add_number(command, "--target-error", options->target_error, 1e-4, 1, "ERROR",
+                                   "plan the cheapest runs after which the prediction along --for is known to this, "
+                                   "e.g. 0.02: half width of its 95 % band with what rate, step and size do, over the "
+                                   "largest value; overrides N, seeds, rate, step, densities and shear strain of SPEC");
+  add_value(command, "--for", options->target_path, "FILE", "PATH.json of that prediction")->needs(target);
   const std::vector<std::string> quantities{"P_star", "s_par", "F_par"};
-  command.add_option("--quantity", options->quantities, "what must be known; default: all")
+  add_value(command, "--quantity", options->quantities, choice_type(quantities), "what must be known; default: all")
       ->needs(target)
       ->delimiter(',')
-      ->type_name(choice_type(quantities))
       ->check(CLI::Validator(
           [quantities](const std::string& text) {
             chosen("--quantity", text, quantities);
             return std::string();
           },
           ""));
-  command.add_option("--max-cost", options->max_cost, "seconds that the pilot and all runs of the plan may take")
-      ->needs(target)
-      ->check(between(0, 1e9))
-      ->type_name("SECONDS");
+  add_number(command, "--max-cost", options->max_cost, 0, 1e9, "SECONDS",
+             "seconds that the pilot and all runs of the plan may take")
+      ->needs(target);
   add_choice<Coupling>(command, "--coupling", options->coupling, "coupling of Eq. (16) instead of the spec's");
   add_choice<fit::Loss>(command, "--loss", options->loss,
                         "squares (default) or huber: rows that are far off, in units of their scatter, count for less");
-  command.add_option("--starts", options->starts, "starts of the coupled fits, of which the lowest minimum is kept")
-      ->check(between(1, 10000))
-      ->type_name("N")
+  add_number(command, "--starts", options->starts, 1, 10000, "N",
+             "starts of the coupled fits, of which the lowest minimum is kept")
       ->capture_default_str();
-  command
-      .add_option(
-          "--iso-from", options->iso_from,
-          "lowest volume fraction of isotropic unloading that is fitted: somewhat above jamming, which friction "
-          "lowers")
-      ->check(between(0.5, 0.8))
-      ->type_name("NU")
+  add_number(command, "--iso-from", options->iso_from, 0.5, 0.8, "NU",
+             "lowest volume fraction of isotropic unloading that is fitted: somewhat above jamming, which friction "
+             "lowers")
       ->capture_default_str();
   command.add_flag("--checks", options->checks,
                    "fits without each packing in turn, and likelihood profiles of doubtful parameters; takes several "
                    "times as long as the fit");
-  command
-      .add_option("--prior", options->prior,
-                  "prior.json of study prior, by which the errors of few packings are moderated, or none; default: "
-                  "the built-in one")
-      ->type_name("FILE");
+  add_value(command, "--prior", options->prior, "FILE",
+            "prior.json of study prior, by which the errors of few packings are moderated, or none; default: "
+            "the built-in one");
   return [options](Session& session) { return calibrate(*options, session); };
 }
 

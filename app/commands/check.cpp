@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
 #include "app/terminal/forecast_text.hpp"
 #include "chain/inspection.hpp"
 #include "model/files/fields_json.hpp"
@@ -49,15 +50,11 @@ ExitCode check(const CheckOptions& options, const Session& session) {
 
 Task declare_check(CLI::App& command) {
   const auto options = std::make_shared<CheckOptions>();
-  command
-      .add_option(
-          "FILES", options->files,
-          "SPEC, TEST, PATH, MAPPING, dataset.json, parameters.json, prior.json, series, table of spheres, state, or "
-          "folder of a data set or calibration; a PATH is seen in the light of the others")
-      ->required()
-      ->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder whose finished runs count as done")
-      ->type_name("DIR")
+  add_value(command, "FILES", options->files, "FILE",
+            "SPEC, TEST, PATH, MAPPING, dataset.json, parameters.json, prior.json, series, table of spheres, state, or "
+            "folder of a data set or calibration; a PATH is seen in the light of the others")
+      ->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder whose finished runs count as done")
       ->capture_default_str();
   return [options](Session& session) { return check(*options, session); };
 }

@@ -36,11 +36,9 @@ ExitCode export_source(const ExportOptions& options, const Session& session) {
 
 Task declare_export(CLI::App& command) {
   const auto options = std::make_shared<ExportOptions>();
-  command.add_option("SOURCE", options->source, "state file, folder of simulate, or data set")
-      ->required()
-      ->type_name("FILE");
+  add_value(command, "SOURCE", options->source, "FILE", "state file, folder of simulate, or data set")->required();
   add_choice<chain::ExportFormat>(command, "--format", options->format, "what is written")->required();
-  command.add_option("-o,--output", options->output, "folder for the files")->required()->type_name("DIR");
+  add_value(command, "-o,--output", options->output, "DIR", "folder for the files")->required();
   return [options](Session& session) { return export_source(*options, session); };
 }
 

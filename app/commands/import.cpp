@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
 #include "app/terminal/import_text.hpp"
 #include "chain/import/import.hpp"
 #include "model/vocabulary/error.hpp"
@@ -42,10 +43,9 @@ ExitCode import(const ImportOptions& options, const Session& session) {
 
 Task declare_import(CLI::App& command) {
   const auto options = std::make_shared<ImportOptions>();
-  command.add_option("MAPPING", options->mapping, "MAPPING.json: files, what their columns mean, units, signs")
-      ->required()
-      ->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder of the data set")->type_name("DIR");
+  add_value(command, "MAPPING", options->mapping, "FILE", "MAPPING.json: files, what their columns mean, units, signs")
+      ->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder of the data set");
   command.add_flag("--dry-run", options->dry_run, "only show what columns are taken for and which paths are found");
   return [options](Session& session) { return import(*options, session); };
 }

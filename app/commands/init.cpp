@@ -79,10 +79,8 @@ ExitCode init(const InitOptions& options) {
 Task declare_init(CLI::App& command) {
   const auto options = std::make_shared<InitOptions>();
   add_choice<Starter>(command, "KIND", options->kind, "of the starter: spec, test, path or dataset")->required();
-  command
-      .add_option("-o,--output", options->output,
-                  "file, - for standard output, or folder of a data set (default: named after KIND)")
-      ->type_name("FILE");
+  add_value(command, "-o,--output", options->output, "FILE",
+            "file, - for standard output, or folder of a data set (default: named after KIND)");
   return [options](Session&) { return init(*options); };
 }
 

@@ -37,6 +37,20 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value
   return command.add_option_function<std::string>(name, set, description)->type_name(choice_type(words));
 }
 
+/// An option with a value, of which `type` says what it is.
+template <class Value>
+CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value, const std::string& type,
+                       const std::string& description) {
+  return command.add_option(name, value, description)->type_name(type);
+}
+
+/// An option that takes a number in [least, most].
+template <class Value>
+CLI::Option* add_number(CLI::App& command, const std::string& name, Value& value, double least, double most,
+                        const std::string& type, const std::string& description) {
+  return add_value(command, name, value, type, description)->check(between(least, most));
+}
+
 /// An option that takes seeds and ranges of seeds.
 CLI::Option* add_seeds(CLI::App& command, const std::string& name, std::vector<std::uint64_t>& seeds,
                        const std::string& description);

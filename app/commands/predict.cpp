@@ -69,31 +69,24 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
 
 Task declare_predict(CLI::App& command) {
   const auto options = std::make_shared<PredictOptions>();
-  command.add_option("PARAMETERS", options->parameters, "parameters.json of a calibration")
-      ->required()
-      ->type_name("FILE");
-  command.add_option("PATH", options->path, "PATH.json")->required()->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder of the prediction")->required()->type_name("DIR");
+  add_value(command, "PARAMETERS", options->parameters, "FILE", "parameters.json of a calibration")->required();
+  add_value(command, "PATH", options->path, "FILE", "PATH.json")->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder of the prediction")->required();
   add_dry_run(command, options->dry_run);
   CLI::Option* dem = command.add_flag("--dem", options->dem, "run the path in the engine on new packings and compare");
-  command
-      .add_option("--against", options->against,
-                  "compare with finished runs of the path: the folder of a data set, or of a prediction with --dem")
-      ->excludes(dem)
-      ->type_name("DIR");
+  add_value(command, "--against", options->against, "DIR",
+            "compare with finished runs of the path: the folder of a data set, or of a prediction with --dem")
+      ->excludes(dem);
   add_choice<Rung>(command, "--model", options->model, "rung of the law; default: those that are calibrated");
   add_choice<predict::Initial>(command, "--initial", options->initial,
                                "start from the law or from measured values; default: law, with --dem both");
   add_seeds(command, "--seeds", options->seeds, "of the new packings, e.g. 201-205 or 1,3,7-9");
-  command
-      .add_option("--spec", options->spec, "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS")
-      ->type_name("FILE");
-  command.add_option("--store", options->store, "folder that holds runs/; default: that of PARAMETERS")
-      ->type_name("DIR");
-  command.add_flag(
-      "--rehearse", options->rehearse,
-      "keep the runs of --against or --dem as a rehearsal in PARAMETERS: how far the law is off on them widens "
-      "the bands of other paths");
+  add_value(command, "--spec", options->spec, "FILE",
+            "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
+  add_value(command, "--store", options->store, "DIR", "folder that holds runs/; default: that of PARAMETERS");
+  command.add_flag("--rehearse", options->rehearse,
+                   "keep the runs of --against or --dem as a rehearsal in PARAMETERS: how far the law is off on them "
+                   "widens the bands of other paths");
   return [options](Session& session) { return run_prediction(*options, session); };
 }
 

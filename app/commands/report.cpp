@@ -2,6 +2,7 @@
 
 #include "app/report/report.hpp"
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
 #include "model/files/json_document.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -10,12 +11,10 @@ namespace grainlaw::app {
 Task declare_report(CLI::App& command) {
   const auto folder = std::make_shared<std::filesystem::path>(), html = std::make_shared<std::filesystem::path>(),
              other = std::make_shared<std::filesystem::path>();
-  command.add_option("DIR", *folder, "folder of a calibration")->required()->type_name("DIR");
-  command
-      .add_option("-o,--output", *html,
-                  "file of the page, e.g. report.html, or - for standard output; not needed with --json")
-      ->type_name("FILE");
-  command.add_option("--compare", *other, "folder of another calibration, set beside this one")->type_name("DIR");
+  add_value(command, "DIR", *folder, "DIR", "folder of a calibration")->required();
+  add_value(command, "-o,--output", *html, "FILE",
+            "file of the page, e.g. report.html, or - for standard output; not needed with --json");
+  add_value(command, "--compare", *other, "DIR", "folder of another calibration, set beside this one");
   return [folder, html, other](Session& session) {
     if (html->empty() && !session.json)
       throw InvalidInput("report: -o FILE is missing, the page's file; or --json for its numbers on standard output");

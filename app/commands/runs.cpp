@@ -34,16 +34,12 @@ ExitCode runs(const RunsOptions& options, Session& session) {
 
 Task declare_runs(CLI::App& command) {
   const auto options = std::make_shared<RunsOptions>();
-  command.add_option("SPEC", options->spec, "SPEC.json of the calibration")->required()->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder of the calibration, whose finished runs are found")
-      ->required()
-      ->type_name("DIR");
-  command
-      .add_option("--array", options->tasks,
-                  "deal the missing runs out to at most N tasks of like work and write them to DIR/tasks, for task "
-                  "and submit")
-      ->check(between(1, 100000))
-      ->type_name("N");
+  add_value(command, "SPEC", options->spec, "FILE", "SPEC.json of the calibration")->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder of the calibration, whose finished runs are found")
+      ->required();
+  add_number(command, "--array", options->tasks, 1, 100000, "N",
+             "deal the missing runs out to at most N tasks of like work and write them to DIR/tasks, for task "
+             "and submit");
   return [options](Session& session) { return runs(*options, session); };
 }
 

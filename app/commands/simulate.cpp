@@ -35,13 +35,10 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
 
 Task declare_simulate(CLI::App& command) {
   const auto options = std::make_shared<SimulateOptions>();
-  command.add_option("TEST", options->test, "TEST.json")->required()->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder for series, states and summary")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--frames", options->frames, "states kept on the way of each segment, at equal steps of the path")
-      ->check(between(0, 9000))
-      ->type_name("N");
+  add_value(command, "TEST", options->test, "FILE", "TEST.json")->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder for series, states and summary")->required();
+  add_number(command, "--frames", options->frames, 0, 9000, "N",
+             "states kept on the way of each segment, at equal steps of the path");
   add_dry_run(command, options->dry_run);
   return [options](Session& session) { return simulate(*options, session); };
 }

@@ -2,6 +2,7 @@
 
 #include "app/commands/commands.hpp"
 #include "app/commands/finish_study.hpp"
+#include "app/commands/options.hpp"
 #include "chain/studies/bands_study.hpp"
 #include "model/files/output.hpp"
 
@@ -26,14 +27,10 @@ ExitCode study_bands(const BandsOptions& options, Session& session) {
 
 Task declare_study_bands(CLI::App& command) {
   const auto options = std::make_shared<BandsOptions>();
-  command.add_option("FOLDER", options->folder, "folder of a calibration with rehearsals")
-      ->required()
-      ->type_name("DIR");
-  command
-      .add_option("--runs", options->runs,
-                  "more rehearsals: folders of data sets, or of predictions with --dem, of one path each")
-      ->type_name("DIR");
-  command.add_option("-o,--output", options->output, "folder for study.json")->required()->type_name("DIR");
+  add_value(command, "FOLDER", options->folder, "DIR", "folder of a calibration with rehearsals")->required();
+  add_value(command, "--runs", options->runs, "DIR",
+            "more rehearsals: folders of data sets, or of predictions with --dem, of one path each");
+  add_value(command, "-o,--output", options->output, "DIR", "folder for study.json")->required();
   return [options](Session& session) { return study_bands(*options, session); };
 }
 

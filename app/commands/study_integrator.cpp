@@ -43,17 +43,12 @@ ExitCode study_integrator(const IntegratorOptions& options, Session& session) {
 
 Task declare_study_integrator(CLI::App& command) {
   const auto options = std::make_shared<IntegratorOptions>();
-  command.add_option("-o,--output", options->output, "folder for study.json and work_precision.svg")
-      ->required()
-      ->type_name("DIR");
+  add_value(command, "-o,--output", options->output, "DIR", "folder for study.json and work_precision.svg")->required();
   command.add_option("--parameters", options->parameters, "parameters.json; default: the published values");
-  command.add_option("--repeats", options->repeats, "repeats of each path, of which the least time counts")
-      ->check(between(1, 1000000))
-      ->type_name("N")
+  add_number(command, "--repeats", options->repeats, 1, 1000000, "N",
+             "repeats of each path, of which the least time counts")
       ->capture_default_str();
-  command.add_option("--paths", options->paths, "paths of the batch over all threads")
-      ->check(between(1, 10000000))
-      ->type_name("N")
+  add_number(command, "--paths", options->paths, 1, 10000000, "N", "paths of the batch over all threads")
       ->capture_default_str();
   return [options](Session& session) { return study_integrator(*options, session); };
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.hpp"
+#include "app/commands/options.hpp"
 #include "app/terminal/session.hpp"
 #include "chain/studies/prior_study.hpp"
 #include "fit/prior_file.hpp"
@@ -54,12 +55,10 @@ ExitCode study_prior(const PriorOptions& options, Session& session) {
 
 Task declare_study_prior(CLI::App& command) {
   const auto options = std::make_shared<PriorOptions>();
-  command.add_option("MANY", options->many, "folder of a data set or calibration of 16 packings or more")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("OTHERS", options->others, "likewise, of the same tests on packings of other sizes")
-      ->type_name("DIR");
-  command.add_option("-o,--output", options->output, "folder for prior.json")->required()->type_name("DIR");
+  add_value(command, "MANY", options->many, "DIR", "folder of a data set or calibration of 16 packings or more")
+      ->required();
+  add_value(command, "OTHERS", options->others, "DIR", "likewise, of the same tests on packings of other sizes");
+  add_value(command, "-o,--output", options->output, "DIR", "folder for prior.json")->required();
   return [options](Session& session) { return study_prior(*options, session); };
 }
 

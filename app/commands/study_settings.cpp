@@ -2,6 +2,7 @@
 
 #include "app/commands/commands.hpp"
 #include "app/commands/finish_study.hpp"
+#include "app/commands/options.hpp"
 #include "chain/studies/calibrated_setting.hpp"
 #include "chain/studies/studies.hpp"
 
@@ -41,51 +42,35 @@ ExitCode study_fit(const SettingsOptions& options, Session& session) {
 
 Task declare_study_dem(CLI::App& command) {
   const auto options = std::make_shared<SettingsOptions>();
-  command.add_option("SPEC", options->data, "SPEC.json, the setting that is judged")->required()->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder for study.json, settings.svg and runs")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--reference", options->reference, "KEY=VALUE of SPEC that make the reference")
-      ->required()
-      ->type_name("KEY=VALUE");
-  command.add_option("--vary", options->vary, "KEY=VALUE of SPEC, one setting each")
-      ->required()
-      ->type_name("KEY=VALUE");
+  add_value(command, "SPEC", options->data, "FILE", "SPEC.json, the setting that is judged")->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder for study.json, settings.svg and runs")->required();
+  add_value(command, "--reference", options->reference, "KEY=VALUE", "KEY=VALUE of SPEC that make the reference")
+      ->required();
+  add_value(command, "--vary", options->vary, "KEY=VALUE", "KEY=VALUE of SPEC, one setting each")->required();
   return [options](Session& session) { return study_dem(*options, session); };
 }
 
 Task declare_study_chain(CLI::App& command) {
   const auto options = std::make_shared<SettingsOptions>();
-  command.add_option("SPEC", options->data, "SPEC.json, the setting that is judged")->required()->type_name("FILE");
-  command.add_option("--for", options->path, "PATH.json of the prediction")->required()->type_name("FILE");
-  command.add_option("-o,--output", options->output, "folder for study.json, settings.svg and runs")
-      ->required()
-      ->type_name("DIR");
-  command
-      .add_option("--reference", options->reference,
-                  "KEY=VALUE of SPEC that make the reference; without any SPEC itself is the reference")
-      ->type_name("KEY=VALUE");
-  command
-      .add_option("--vary", options->vary,
-                  "KEY=VALUE of SPEC, one setting each, e.g. seeds=[1,2] or tests[1].strain=0.2")
-      ->required()
-      ->type_name("KEY=VALUE");
+  add_value(command, "SPEC", options->data, "FILE", "SPEC.json, the setting that is judged")->required();
+  add_value(command, "--for", options->path, "FILE", "PATH.json of the prediction")->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder for study.json, settings.svg and runs")->required();
+  add_value(command, "--reference", options->reference, "KEY=VALUE",
+            "KEY=VALUE of SPEC that make the reference; without any SPEC itself is the reference");
+  add_value(command, "--vary", options->vary, "KEY=VALUE",
+            "KEY=VALUE of SPEC, one setting each, e.g. seeds=[1,2] or tests[1].strain=0.2")
+      ->required();
   return [options](Session& session) { return study_chain(*options, session); };
 }
 
 Task declare_study_fit(CLI::App& command) {
   const auto options = std::make_shared<SettingsOptions>();
-  command.add_option("FOLDER", options->data, "folder of a data set or of a calibration")->required()->type_name("DIR");
-  command.add_option("-o,--output", options->output, "folder for study.json and settings.svg")
-      ->required()
-      ->type_name("DIR");
-  command.add_option("--for", options->path, "PATH.json of a prediction to judge by; default: the laws")
-      ->type_name("FILE");
-  command
-      .add_option("--vary", options->vary,
-                  "KEY=VALUE, one setting each: rows_every=k, packings=n, densities_every=k, shear_strain=fraction, "
-                  "loss=huber; default: the usual ones")
-      ->type_name("KEY=VALUE");
+  add_value(command, "FOLDER", options->data, "DIR", "folder of a data set or of a calibration")->required();
+  add_value(command, "-o,--output", options->output, "DIR", "folder for study.json and settings.svg")->required();
+  add_value(command, "--for", options->path, "FILE", "PATH.json of a prediction to judge by; default: the laws");
+  add_value(command, "--vary", options->vary, "KEY=VALUE",
+            "KEY=VALUE, one setting each: rows_every=k, packings=n, densities_every=k, shear_strain=fraction, "
+            "loss=huber; default: the usual ones");
   return [options](Session& session) { return study_fit(*options, session); };
 }
 

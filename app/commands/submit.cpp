@@ -60,20 +60,15 @@ Task declare_submit(CLI::App& command) {
   const auto word = [&](const char* name, auto& value, const char* type, const char* description) {
     command.add_option(name, value, description)->check(one_word())->type_name(type)->allow_extra_args(false);
   };
-  command.add_option("DIR", options->folder, "folder that grainlaw runs --array has written to")
-      ->required()
-      ->type_name("DIR");
+  add_value(command, "DIR", options->folder, "DIR", "folder that grainlaw runs --array has written to")->required();
   command.add_flag("--slurm", options->to_slurm, "by sbatch of Slurm");
   word("--account", slurm.account, "NAME", "who pays");
   word("--partition", slurm.partition, "NAME", "where to");
   word("--time", slurm.time, "TIME", "limit of each start of a task, three minutes or more, e.g. 4:00:00");
   word("--sbatch", slurm.more, "OPTION", "a further option of sbatch, e.g. --sbatch=--mem=4G");
-  command.add_option("--array", options->tasks, "deal the runs that are missing now out to at most N tasks")
-      ->check(between(1, 100000))
-      ->type_name("N");
-  command.add_option("--cores", slurm.threads, "of each task, and of the calibration")
-      ->check(between(1, 1024))
-      ->type_name("N")
+  add_number(command, "--array", options->tasks, 1, 100000, "N",
+             "deal the runs that are missing now out to at most N tasks");
+  add_number(command, "--cores", slurm.threads, 1, 1024, "N", "of each task, and of the calibration")
       ->capture_default_str();
   command.add_flag("--dry-run", options->dry_run, "write the scripts, submit nothing");
   return [options](Session& session) { return submit_tasks(*options, session); };

@@ -32,14 +32,10 @@ ExitCode make_task(const TaskOptions& options, Session& session) {
 
 Task declare_task(CLI::App& command) {
   const auto options = std::make_shared<TaskOptions>();
-  command.add_option("DIR", options->folder, "folder that grainlaw runs --array has written to")
-      ->required()
-      ->type_name("DIR");
-  command
-      .add_option("WHICH", options->which,
-                  "number of a task, or name or key (eight digits will do) of a run; several are done in this order")
-      ->required()
-      ->type_name("TASK");
+  add_value(command, "DIR", options->folder, "DIR", "folder that grainlaw runs --array has written to")->required();
+  add_value(command, "WHICH", options->which, "TASK",
+            "number of a task, or name or key (eight digits will do) of a run; several are done in this order")
+      ->required();
   return [options](Session& session) { return make_task(*options, session); };
 }
 

@@ -26,7 +26,7 @@ const char* block_style() {
 header > .source { font-size: .9rem; margin: .3rem 0; }
 header table { margin: .5rem 0; }
 header p, header ul { margin: .4rem 0; max-width: none; }
-nav ol { columns: auto; display: flex; flex-wrap: wrap; gap: .1rem 1rem; padding: .4rem 0 0; margin: .4rem 0 0; list-style: none;
+nav ol { display: flex; flex-wrap: wrap; gap: .1rem 1rem; padding: .4rem 0 0; margin: .4rem 0 0; list-style: none;
   border-top: 1px solid var(--rule); font-size: .9rem; }
 header h2 { margin: .6rem 0 .2rem; padding: 0; border: 0; font-size: 1rem; }
 .heat0 { background: var(--heat0); } .heat1 { background: var(--heat1); } .heat2 { background: var(--heat2); }

@@ -71,9 +71,7 @@ Table error_pairs(const std::vector<PathError>& ours, const std::vector<PathErro
   const auto column = [](std::size_t q, bool mine) {
     return [=](const OnPath& path) {
       const double error = (mine ? path.ours : path.other).error[q];
-      Cell shade(fixed(100 * error, 1), 100 * error);
-      shade.heat = heat_of(error);
-      return shade;
+      return Cell(fixed(100 * error, 1), 100 * error, heat_of(error));
     };
   };
   return table_of("Errors on the paths that both have, each by the rung that it recommends [%]: this, other",

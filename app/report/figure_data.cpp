@@ -22,12 +22,12 @@ bool is_of_data(const Series& series) {
   return series.marker != Marker::none || (series.line == Line::solid && series.line_width < kLawWidth);
 }
 
-}  // namespace
-
 bool shows_data(const Panel& panel) {
   const bool lacks = std::ranges::any_of(panel.series, [](const Series& s) { return !has_points(s); });
   return !lacks || std::ranges::any_of(panel.series, [](const Series& s) { return is_of_data(s) && has_points(s); });
 }
+
+}  // namespace
 
 Figure with_data(Figure figure) {
   std::vector<std::string> absent;

@@ -5,11 +5,8 @@
 
 namespace grainlaw::app::report {
 
-/// Whether there is data in the panel, or nothing that lacks them: it does not when a series of it has no point that can be drawn and
-/// none with symbols, or thin as those of single runs, has.
-bool shows_data(const Panel& panel);
-
-/// Without the panels that show none, which the caption then names; perhaps without any panel.
+/// Without the panels that show none, which the caption then names; perhaps without any panel. A panel shows none when a series of it
+/// has no point that can be drawn and none with symbols, or thin as those of single runs, has.
 Figure with_data(Figure figure);
 
 }  // namespace grainlaw::app::report

@@ -35,10 +35,6 @@ void add_steady_symbols(Panel& panel, const chain::ReportInput& input, double fi
   }
 }
 
-struct Range {
-  double from, to;
-};
-
 /// From a little below jamming, where the laws begin, to the densest row.
 Range shown_range(const chain::ReportInput& input) {
   const CalibratedLaw& c = input.calibration.law;
@@ -51,9 +47,8 @@ Range shown_range(const chain::ReportInput& input) {
 template <class Function>
 void add_law(Panel& panel, const Range& range, const char* name, Colour colour, Line line,
              const LawParameters<double>& p, const Function& of) {
-  Series style = line_of(plain(name), colour, line);
-  if (line == Line::dashed) style.toggle = "published";
-  panel.series.push_back(curve(style, range.from, range.to, [&](double nu) { return of(p, nu); }));
+  panel.series.push_back(
+      curve(line_of(plain(name), colour, line), range.from, range.to, [&](double nu) { return of(p, nu); }));
 }
 
 Panel density_panel(const char* label, const Range& range) {
@@ -74,9 +69,9 @@ Panel state_panel(const chain::ReportInput& input, const char* label, const std:
   const LawParameters<double>&ours = input.calibration.law.parameters, published = published_parameters();
   add_law(panel, range, "ISO, published", Colour::ink, Line::dashed, published, isotropic.of);
   add_law(panel, range, "steady D2, published", Colour::purple, Line::dashed, published, steady.of);
-  if (is_known(isotropic, input.calibration.law))
+  if (has_values(input.calibration.law, isotropic))
     add_law(panel, range, "ISO, fitted", Colour::blue, Line::solid, ours, isotropic.of);
-  if (is_known(steady, input.calibration.law))
+  if (has_values(input.calibration.law, steady))
     add_law(panel, range, "steady D2, fitted", Colour::vermillion, Line::solid, ours, steady.of);
   return panel;
 }
@@ -138,19 +133,18 @@ Figure scaled_density_figure(const chain::ReportInput& input) {
   Panel trace = unloading_panel(input, "fabric trace {F}_{v} [–]", nullptr, &Observation::F_v, "fabric",
                                 [](const P& p, double nu) { return p.fabric_g3 * nu * p.isotropic.C(nu); });
   trace.y.from = 2.5;
-  return {
-      .id = "scaled",
-      .title = "Scaled pressure, overlap and fabric trace on isotropic unloading",
-      .description =
-          "Three panels over volume fraction, all rising: pressure divided by density and coordination, mean overlap "
-          "of contacts, trace of the fabric tensor. Symbols are DEM data, solid lines the fitted equations, dashed "
-          "lines the published ones.",
-      .caption = notation("Scaled pressure {P}* {ν}_{c}/({ν}{C}) with Eq. 15, mean overlap with Eq. 13 ({D} "
-                          "ln({ν}/{ν}_{c})), {F}_{v} with {g}_{3}{ν}{C}."),
-      .sources = {"dataset/", "parameters.json"},
-      .panels = {scaled, overlap, trace},
-      .columns = 3,
-      .panel_height = 230};
+  return {.id = "scaled",
+          .title = "Scaled pressure, overlap and fabric trace on isotropic unloading",
+          .description =
+              "Three panels over volume fraction, all rising: pressure divided by density and coordination, mean "
+              "overlap of contacts, trace of the fabric tensor. Symbols are DEM data, solid lines the fitted "
+              "equations, dashed lines the published ones.",
+          .caption = notation("Scaled pressure {P}* {ν}_{c}/({ν}{C}) with Eq. 15, mean overlap with Eq. 13 ({D} "
+                              "ln({ν}/{ν}_{c})), {F}_{v} with {g}_{3}{ν}{C}."),
+          .sources = {"dataset/", "parameters.json"},
+          .panels = {scaled, overlap, trace},
+          .columns = 3,
+          .panel_height = 230};
 }
 
 }  // namespace grainlaw::app::report

@@ -48,8 +48,7 @@ Law staged_parameters(const fit::Calibration& calibration) {
 }
 
 bool is_sheared_by(const fit::Calibration& calibration, Mode mode) {
-  return std::any_of(calibration.shear.begin(), calibration.shear.end(),
-                     [=](const ShearFit& fit) { return fit.mode == mode; });
+  return std::ranges::any_of(calibration.shear, [=](const ShearFit& fit) { return fit.mode == mode; });
 }
 
 /// The runs of `mode`, each fitted by itself.
@@ -69,21 +68,17 @@ Series per_run_points(const fit::Calibration& calibration, Mode mode, const Shea
   return series;
 }
 
-struct Range20 {
-  double from, to;
-};
-
 /// Densities of the shear fits; the calibrated range when they are one.
-Range20 sheared_range(const fit::Calibration& calibration) {
-  Range20 range{calibration.law.range.nu_max, calibration.law.range.nu_min};
+Range sheared_range(const fit::Calibration& calibration) {
+  Range range{calibration.law.range.nu_max, calibration.law.range.nu_min};
   for (const ShearFit& shear : calibration.shear)
     range = {std::min(range.from, shear.nu), std::max(range.to, shear.nu)};
-  return range.from < range.to ? range : Range20{calibration.law.range.nu_min, calibration.law.range.nu_max};
+  return range.from < range.to ? range : Range{calibration.law.range.nu_min, calibration.law.range.nu_max};
 }
 
 Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quantity) {
   const DensityCurve& law = density_curve(quantity.curve);
-  const bool known = is_known(law, calibration.law);
+  const bool known = has_values(calibration.law, law);
   Panel panel = panel_of(known ? "" : "Eq. 20 not identified by these tests", kDensityLabel, quantity.label);
   panel.y.include = 0;
   for (const Mode mode : {Mode::D2, Mode::D3}) {
@@ -94,9 +89,9 @@ Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quan
                                    &ShearFit::nu, quantity.steady_mean));
   }
   const auto add = [&](const char* name, Colour colour, Line line, const auto& of_density) {
-    const Range20 range = sheared_range(calibration);
+    const Range range = sheared_range(calibration);
     Series style = line_of(plain(name), colour, line);
-    if (line != Line::solid) style.toggle = line == Line::dashed ? "published" : "before the coupled fit";
+    if (line == Line::dotted) style.toggle = "before the coupled fit";
     panel.series.push_back(curve(style, range.from, range.to, of_density));
   };
   const Law published = published_parameters(), staged = staged_parameters(calibration);
@@ -118,21 +113,19 @@ Panel shear_panel(const fit::Calibration& calibration, const ShearQuantity& quan
 Figure shear_law_figure(const chain::ReportInput& input) {
   std::vector<Panel> panels;
   for (const ShearQuantity& quantity : kShearQuantities) panels.push_back(shear_panel(input.calibration, quantity));
-  return {
-      .id = "shear-laws",
-      .title = "Steady values and rates of shear against volume fraction",
-      .description =
-          "Four panels over volume fraction, all falling: steady stress ratio, its rate, steady deviatoric fabric, "
-          "its rate. Symbols are fits of single DEM runs, solid lines equation 20 after the coupled fit, dotted "
-          "lines equation 20 before it, dashed lines the published law.",
-      .caption = notation(
-          "Eq. 20 with {ν}_{c} fixed. Circles: Eqs. 17 and 18 fitted run by run; crosses: mean of the steady rows. "
-          "Dotted: staged fit of Eq. 20. Solid: after the coupled fit of Eq. 16, of D2 and, where D3 was fitted, of "
-          "D3 by its Lode angle. Dashed: Table 3 of the paper."),
-      .sources = {"calibration.json", "parameters.json"},
-      .panels = panels,
-      .columns = 2,
-      .panel_height = 200};
+  return {.id = "shear-laws",
+          .title = "Steady values and rates of shear against volume fraction",
+          .description =
+              "Four panels over volume fraction, all falling: steady stress ratio, its rate, steady deviatoric fabric, "
+              "its rate. Symbols are fits of single DEM runs, solid lines equation 20 after the coupled fit, dotted "
+              "lines equation 20 before it, dashed lines the published law.",
+          .caption = notation("Eq. 20 with {ν}_{c} fixed. Circles: Eqs. 17 and 18 fitted run by run; crosses: mean of "
+                              "the steady rows. Dotted: staged fit of Eq. 20. Solid: after the coupled fit of Eq. 16, "
+                              "of D2 and, where D3 was fitted, of D3 by its Lode angle. Dashed: Table 3 of the paper."),
+          .sources = {"calibration.json", "parameters.json"},
+          .panels = panels,
+          .columns = 2,
+          .panel_height = 200};
 }
 
 Figure residual_figure(const chain::ReportInput& input) {
@@ -168,10 +161,9 @@ Figure residual_figure(const chain::ReportInput& input) {
       .description =
           "Two rows of three panels over the starting density of each calibration test: root mean square and mean of "
           "model minus DEM, divided by the largest DEM value, for pressure, stress ratio and fabric.",
-      .caption = notation(
-          "Model (Eq. 16) minus DEM over max|DEM| of the test. In D2 the bias of {P}* grows towards jamming: Eq. 16 "
-          "has no dilatancy, so pressure hardly changes at constant volume while that of the packing rises. This is "
-          "the known gap of the law, shown and not fitted away."),
+      .caption = notation("Model (Eq. 16) minus DEM over max|DEM| of the test. In D2 the bias of {P}* grows towards "
+                          "jamming: Eq. 16 has no dilatancy, so pressure hardly changes at constant volume while that "
+                          "of the packing rises. This is the known gap of the law, shown and not fitted away."),
       .sources = {"calibration.json"},
       .panels = panels,
       .columns = 3,

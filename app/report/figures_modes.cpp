@@ -15,16 +15,13 @@ Series thin_line(const std::string& label, Colour colour, Line line) {
 }
 
 Series published_line(const std::string& mode, Colour colour) {
-  Series line = line_of(plain(mode + ", published"), colour, Line::dashed);
-  line.toggle = "published";
-  return line;
+  return line_of(plain(mode + ", published"), colour, Line::dashed);
 }
 
 /// Whether all of the test is uniaxial, loading and unloading.
 bool is_uniaxial_cycle(const TestRecord& test) {
   const auto& segments = test.path.segments;
-  return segments.size() > 1 &&
-         std::all_of(segments.begin(), segments.end(), [](const PathSegment& s) { return s.mode == Mode::UNI; });
+  return segments.size() > 1 && std::ranges::all_of(segments, [](const PathSegment& s) { return s.mode == Mode::UNI; });
 }
 
 /// Whether the row is of a segment that expands.
@@ -184,21 +181,20 @@ Figure modes_figure(const chain::ReportInput& input) {
         branches_of_shear(input, "Fig. 8", "pressure {P}* [–]", &Observation::P_star)}) {
     if (!of_shear.series.empty()) panels.push_back(of_shear);
   }
-  return {
-      .id = "modes",
-      .title = "The runs mode by mode, as the paper draws them",
-      .description =
-          "Volume fraction over time, coordination number and rattlers over volume fraction, scaled pressure over "
-          "volumetric strain, and where D2 starts from both branches, its coordination number and pressure over "
-          "deviatoric strain. Thin lines are DEM runs, dashed lines the published equations.",
-      .caption = notation(
-          "Figures of the paper by their numbers. Thin lines: DEM, one for each run; dotted: loading, or D2 from the "
-          "loading branch; dashed: Table 2 of the paper. Time of decompression goes on from the compression before "
-          "it, without the rest between them. {ν}_{c} of Fig. 10 is each mode's own."),
-      .sources = {"dataset/", "calibration.json"},
-      .panels = panels,
-      .columns = 3,
-      .panel_height = 270};
+  return {.id = "modes",
+          .title = "The runs mode by mode, as the paper draws them",
+          .description =
+              "Volume fraction over time, coordination number and rattlers over volume fraction, scaled pressure over "
+              "volumetric strain, and where D2 starts from both branches, its coordination number and pressure over "
+              "deviatoric strain. Thin lines are DEM runs, dashed lines the published equations.",
+          .caption = notation(
+              "Figures of the paper by their numbers. Thin lines: DEM, one for each run; dotted: loading, or D2 from "
+              "the loading branch; dashed: Table 2 of the paper. Time of decompression goes on from the compression "
+              "before it, without the rest between them. {ν}_{c} of Fig. 10 is each mode's own."),
+          .sources = {"dataset/", "calibration.json"},
+          .panels = panels,
+          .columns = 3,
+          .panel_height = 270};
 }
 
 }  // namespace grainlaw::app::report

@@ -105,15 +105,13 @@ Drawing packing_drawing(const dem::ShearPictures& pictures) {
   std::string caption = fmt::format(
       "{}: {} spheres at ν = {}, sheared at constant volume to a deviatoric strain of {}. Grey: what a plane cuts of "
       "the spheres; lines: contacts within half a mean radius of it, as wide as the force, red above the mean force of "
-      "all "
-      "contacts.",
+      "all contacts.",
       pictures.test, pictures.particles, significant(pictures.nu, 3), strain);
   Drawing drawing{"packing", "A packing and its force chains before and after shear", {}, {}, {"dataset/pictures.json"},
                   {}};
   drawing.description =
       "Spheres cut by a plane, lines between the centres of those that touch, as wide as the force; and how many "
-      "contacts, "
-      "and how much force, there is in each direction of the plane.";
+      "contacts, and how much force, there is in each direction of the plane.";
   drawing.panels = {slice_svg("before shear", before, scale, "packing-before"),
                     slice_svg("after shear to " + strain, after, scale, "packing-after")};
   if (!before.count.empty() && !after.count.empty()) {

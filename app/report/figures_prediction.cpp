@@ -30,10 +30,8 @@ constexpr double kAboveJamming =
     1.005;  // of nu_c, from where P* over that of ISO unloading is no quotient of two small numbers
 constexpr std::size_t kLinePoints = 100, kSymbolsOfARun = 36;
 
-template <class Row>
-bool strain_grows(const std::vector<Row>& rows) {
-  const auto less = [](const Row& a, const Row& b) { return a.eps_dev < b.eps_dev; };
-  return std::is_sorted(rows.begin(), rows.end(), less);
+bool strain_grows(const auto& rows) {
+  return std::ranges::is_sorted(rows, {}, [](auto& row) { return row.eps_dev; });
 }
 
 /// Runs of one path by another engine than that of the prediction's own.
@@ -90,10 +88,10 @@ Shown shown_of(const std::vector<PredictionFolder>& predictions, std::size_t ind
   Shown shown{prediction, law.parameters, chain::dem_records(prediction), other_runs(predictions, index)};
   std::vector<TestRecord> all = shown.dem;
   for (const OtherRuns& other : shown.others) all.insert(all.end(), other.tests.begin(), other.tests.end());
-  shown.by_strain =
-      std::all_of(all.begin(), all.end(), [](const TestRecord& test) { return strain_grows(test.rows); }) &&
-      std::all_of(prediction.curves.begin(), prediction.curves.end(),
-                  [](const PredictedCurve& drawn) { return strain_grows(drawn.prediction.rows); });
+  shown.by_strain = std::ranges::all_of(all, [](const TestRecord& test) { return strain_grows(test.rows); }) &&
+                    std::ranges::all_of(prediction.curves, [](const PredictedCurve& drawn) {
+                      return strain_grows(drawn.prediction.rows);
+                    });
   const double least = kAboveJamming * law.parameters.isotropic.pressure.nu_c;
   for (const PredictedCurve& drawn : prediction.curves) {
     for (const PredictedRow& row : drawn.prediction.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
@@ -101,18 +99,8 @@ Shown shown_of(const std::vector<PredictionFolder>& predictions, std::size_t ind
   for (const TestRecord& test : all) {
     for (const Observation& row : test.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
   }
-  shown.by_ratio = shown.by_ratio && is_known(density_curve("P_star"), law);
+  shown.by_ratio = shown.by_ratio && has_values(law, density_curve("P_star"));
   return shown;
-}
-
-/// About `points` rows, evenly, and the last.
-std::vector<PredictedRow> thinned(const std::vector<PredictedRow>& rows, std::size_t points) {
-  std::vector<PredictedRow> few;
-  const std::size_t stride = std::max<std::size_t>(1, rows.size() / points);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (i % stride == 0 || i + 1 == rows.size()) few.push_back(rows[i]);
-  }
-  return few;
 }
 
 /// Started from the law, a curve is the same for every seed and shown once; from measured values there is one for each.
@@ -203,9 +191,9 @@ Panel value_panel(const Shown& shown, const Predicted& quantity) {
 
 /// Whether the curve has a band of a single run, in whose half width its residual counts.
 bool has_band(const PredictionFolder& prediction) {
-  return std::any_of(prediction.curves.begin(), prediction.curves.end(), [](const PredictedCurve& drawn) {
-    return std::any_of(drawn.prediction.rows.begin(), drawn.prediction.rows.end(),
-                       [](const PredictedRow& row) { return row.single.s_par > 0 || row.single.P > 0; });
+  return std::ranges::any_of(prediction.curves, [](const PredictedCurve& drawn) {
+    return std::ranges::any_of(drawn.prediction.rows,
+                               [](const PredictedRow& row) { return row.single.s_par > 0 || row.single.P > 0; });
   });
 }
 
@@ -269,21 +257,20 @@ Figure prediction_figure(const std::vector<predict::PredictionFolder>& predictio
       : has_band(prediction)
           ? " Below: DEM − law in half widths of the 95 % band of a single run, within the grey strip as expected."
           : " Below: DEM − law; there is no band of a single run.";
-  return {
-      .id = prediction_id(index),
-      .title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
-                           prediction.path.nu, to_string(prediction.path.branch)),
-      .description =
-          "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs "
-          "on packings that the calibration never saw, the thick line the recommended prediction of the law with its "
-          "bands. Below each the residuals.",
-      .caption = plain(fmt::format("{}{} Thick: {}, recommended: {}. Bands: {}. The path needs {}: {}.", runs, residual,
-                                   to_string(prediction.recommended.rung), prediction.recommended.why, prediction.bands,
-                                   to_string(prediction.needed.rung), prediction.needed.why)),
-      .sources = sources,
-      .panels = panels,
-      .columns = 3,
-      .panel_height = compared ? 200.0 : 250.0};
+  return {.id = prediction_id(index),
+          .title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
+                               prediction.path.nu, to_string(prediction.path.branch)),
+          .description =
+              "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs "
+              "on packings that the calibration never saw, the thick line the recommended prediction of the law with "
+              "its bands. Below each the residuals.",
+          .caption = plain(fmt::format("{}{} Thick: {}, recommended: {}. Bands: {}. The path needs {}: {}.", runs,
+                                       residual, to_string(prediction.recommended.rung), prediction.recommended.why,
+                                       prediction.bands, to_string(prediction.needed.rung), prediction.needed.why)),
+          .sources = sources,
+          .panels = panels,
+          .columns = 3,
+          .panel_height = compared ? 200.0 : 250.0};
 }
 
 }  // namespace grainlaw::app::report

@@ -54,8 +54,7 @@ std::vector<PanelKey> panel_keys(const std::vector<const TestRecord*>& tests) {
 }
 
 std::string panel_title(const PanelKey& key, const std::vector<PanelKey>& keys) {
-  const bool several_modes =
-      std::any_of(keys.begin(), keys.end(), [&](const PanelKey& other) { return other.mode != key.mode; });
+  const bool several_modes = std::ranges::any_of(keys, [&](const PanelKey& other) { return other.mode != key.mode; });
   return fmt::format("{}{}{{ν}} = {:.3f}", several_modes ? to_string(key.mode) + ", " : "",
                      key.branch == Branch::loading ? "loading branch, " : "", key.nu);
 }
@@ -133,15 +132,13 @@ Figure figure_of_shear(const chain::ReportInput& input, const Shear& what) {
     }
     add_rungs(panel, key, input, what);
     if (what.published == nullptr || key.mode != Mode::D2) continue;
-    Series line = line_of(plain("published (D2)"), Colour::ink, Line::dashed);
-    line.toggle = "published";
     panel.series.push_back(curve(
-        line, 0, end, [&](double e) { return what.published(published_parameters(), key.nu, e); }, kPointsOfFit));
+        line_of(plain("published (D2)"), Colour::ink, Line::dashed), 0, end,
+        [&](double e) { return what.published(published_parameters(), key.nu, e); }, kPointsOfFit));
   }
   std::string caption =
       "Grey: DEM runs. Thick line: the recommended rung from the law's own start, for D3 with the factors of its Lode "
-      "angle; "
-      "runs from the loading branch are outside the law, which knows that of unloading. Other rungs";
+      "angle; runs from the loading branch are outside the law, which knows that of unloading. Other rungs";
   caption += what.equation == nullptr
                  ? " behind the buttons."
                  : std::string(" and Eq. ") + what.equation +

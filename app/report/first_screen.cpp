@@ -203,11 +203,10 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
                    "predictions"});
   }
   if (input.calibration.law.rehearsals.empty())
-    all.push_back(
-        {62,
-         "What the law itself has wrong is in no band, as no path was rehearsed; grainlaw predict with --rehearse "
-         "keeps a path's runs for that.",
-         "predictions"});
+    all.push_back({62,
+                   "What the law itself has wrong is in no band, as no path was rehearsed; grainlaw predict with "
+                   "--rehearse keeps a path's runs for that.",
+                   "predictions"});
   const auto& rehearsals = input.calibration.law.rehearsals;
   const auto known_packings = std::ranges::count_if(rehearsals, [](const Rehearsal& rehearsal) {
     // nothing is taken off for chance where packings are those of the fit (docs/theory/bands.md)
@@ -215,13 +214,11 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
            rehearsal.rungs.front().P_star.known == 0;
   });
   if (known_packings > 0)
-    all.push_back(
-        {47,
-         fmt::format(
-             "{} of {} rehearsals ran on packings whose other tests were fitted: along these the law looks better "
-             "than on new packings.",
-             known_packings, rehearsals.size()),
-         "predictions"});
+    all.push_back({47,
+                   fmt::format("{} of {} rehearsals ran on packings whose other tests were fitted: along these the law "
+                               "looks better than on new packings.",
+                               known_packings, rehearsals.size()),
+                   "predictions"});
   const PathError *worst = nullptr, *least_held = nullptr;
   std::size_t worst_of = 0, held_of = 0;
   for (const PathError& entry : errors) {
@@ -299,8 +296,7 @@ Paragraph verdict(const ReportInput& input, const std::vector<PathError>& errors
     return {plain("Do not use it yet: the fit did not converge, what follows is not its optimum."), Tone::poor};
   if (errors.empty())
     return {plain("Not judged: no path that the fit never saw was run beside the law. Its parameters stand below; how "
-                  "well it "
-                  "predicts is not known."),
+                  "well it predicts is not known."),
             Tone::poor};
   std::vector<std::string> clauses;
   std::set<PathKind> kinds;
@@ -349,9 +345,8 @@ Table errors_by_kind(const std::vector<PathError>& errors) {
   }
   const auto cell = [](std::size_t q) {
     return [q](const OfKind& row) {
-      Cell shade(error_text(row.over[q]), row.over[q].paths > 0 ? 100 * row.over[q].rms : kUndefined);
-      shade.heat = row.over[q].paths > 0 ? heat_of(row.over[q].rms) : -1;
-      return shade;
+      const double rms = row.over[q].paths > 0 ? row.over[q].rms : kUndefined;
+      return Cell(error_text(row.over[q]), 100 * rms, heat_of(rms));
     };
   };
   return table_of(

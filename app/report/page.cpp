@@ -1,6 +1,7 @@
 #include "app/report/page.hpp"
 
 #include <fmt/format.h>
+#include <openssl/evp.h>
 
 #include <algorithm>
 #include <array>
@@ -56,15 +57,6 @@ constexpr const char* kTemplate = R"(<!DOCTYPE html>
 )";
 
 using kainjow::mustache::data;
-
-std::string file_list(const std::vector<std::string>& files) {
-  std::string html;
-  for (const std::string& file : files) {
-    if (!html.empty()) html += ", ";
-    html += "<code>" + to_html(plain(file)) + "</code>";
-  }
-  return html;
-}
 
 /// `characters` of its text; 0 in a heading.
 const char* cell_class(Content content, std::size_t characters) {
@@ -168,7 +160,7 @@ std::string html_of(const Table& table) {
                                  table.id.empty() ? "" : " id=\"" + table.id + "\"", to_html(plain(table.caption)));
   html += "<table class=\"" + class_of(table) + (is_wide(table) ? " cards" : "") + "\">\n<caption>" +
           to_html(plain(table.caption));
-  if (!table.source.empty()) html += " <span class=\"source\">From " + file_list({table.source}) + "</span>";
+  if (!table.source.empty()) html += " <span class=\"source\">From " + code_list({table.source}) + "</span>";
   html += "</caption>\n<thead><tr>";
   for (const TableColumn& column : table.columns) {
     const std::string heading = to_html(column.heading);
@@ -251,17 +243,10 @@ std::string card_style(const Page& page) {
   return style + "}\n";
 }
 
-/// Of 32 bytes: 43 characters and one that fills up.
 std::string base64(const std::string& bytes) {
-  std::string text;
-  unsigned held = 0;
-  int bits = 0;
-  for (const char byte : bytes) {
-    held = held << 8 | static_cast<unsigned char>(byte);
-    for (bits += 8; bits >= 6; bits -= 6) text += base64_character(held >> (bits - 6));
-  }
-  if (bits > 0) text += base64_character(held << (6 - bits));
-  while (text.size() % 4 != 0) text += '=';
+  std::string text((bytes.size() + 2) / 3 * 4, ' ');
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), reinterpret_cast<const unsigned char*>(bytes.data()),
+                  static_cast<int>(bytes.size()));  // ends with a zero, as the string does
   return text;
 }
 

@@ -119,13 +119,6 @@ std::string legend_html(const Figure& figure, const RenderedFigure& rendered) {
                            to_html(plain(figure.title)), keys, boxes);
 }
 
-std::string code_list(const std::vector<std::string>& files) {
-  std::string html;
-  for (const std::string& file : files)
-    html += (html.empty() ? "<code>" : ", <code>") + to_html(plain(file)) + "</code>";
-  return html;
-}
-
 std::string said_of_points(int count, const char* what) {
   return count == 0 ? "" : fmt::format(" {} {}.", count, what);
 }
@@ -138,10 +131,18 @@ std::string caption_html(const std::string& id, const std::string& title, const 
       id, to_html(plain(title)), to_html(caption));
 }
 
-}  // namespace
-
+/// Of base 64.
 char base64_character(unsigned six_bits) {
   return "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"[six_bits & 63u];
+}
+
+}  // namespace
+
+std::string code_list(const std::vector<std::string>& files) {
+  std::string html;
+  for (const std::string& file : files)
+    html += (html.empty() ? "<code>" : ", <code>") + to_html(plain(file)) + "</code>";
+  return html;
 }
 
 std::string packed_numbers(const std::vector<double>& values, bool logarithmic) {

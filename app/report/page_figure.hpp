@@ -11,8 +11,8 @@ namespace grainlaw::app::report {
 std::string figure_html(const Figure& figure);
 std::string drawing_html(const Drawing& drawing);
 
-/// The base-64 character of six bits.
-char base64_character(unsigned six_bits);
+/// Names of files, parted by commas.
+std::string code_list(const std::vector<std::string>& files);
 
 /// `values` for a script, as JSON: [lowest, highest, characters], three characters of base 64 for each value, 0 at the lowest
 /// and 262142 at the highest, 262143 where it is undefined; with `logarithmic` of the natural logarithms, and undefined where

@@ -27,7 +27,6 @@ code { font: .85em ui-monospace, "DejaVu Sans Mono", monospace; overflow-wrap: a
 td { overflow-wrap: anywhere; }
 td.number, td.symbol { overflow-wrap: normal; }
 .long { min-width: 13rem; }
-nav ol { columns: 2; padding-left: 1.5rem; margin: 1rem 0; font-size: .95rem; }
 figure { margin: 1.5rem 0 2rem; }
 figcaption { max-width: 56rem; font-size: .9rem; margin-top: .4rem; }
 .source { color: var(--quiet); }
@@ -76,7 +75,6 @@ tbody tr:nth-child(even) { background: var(--band); }
 sub, sup { line-height: 0; font-size: 75%; }
 /* narrow: each row of a wide table is a card; what stands before its cells is told for each table */
 @media (max-width: 44rem) {
-  nav ol { columns: 1; }
   table { font-size: .8rem; }
   th, td { padding: .2rem .3rem; }
   .number, .symbol { white-space: normal; }

@@ -33,10 +33,8 @@ Block drawn(const Figure& whole) {
 
 constexpr const char* kReading =
     "Symbols and thin lines in figures are DEM data, thick lines the law, dashed lines the published law; form of the "
-    "law and "
-    "published numbers are those of Imole, Kumar, Magnanimo and Luding, KONA 30 (2013). Stress is positive in "
-    "compression, strain "
-    "in tension; a star means multiplied by 2⟨r⟩/k.";
+    "law and published numbers are those of Imole, Kumar, Magnanimo and Luding, KONA 30 (2013). Stress is positive in "
+    "compression, strain in tension; a star means multiplied by 2⟨r⟩/k.";
 
 /// The largest pressure misfit among the constant-volume tests of the coupled fit, in words.
 std::string dilatancy_gap(const chain::ReportInput& input) {
@@ -48,9 +46,8 @@ std::string dilatancy_gap(const chain::ReportInput& input) {
   }
   if (worst == nullptr) return "No constant-volume test entered the coupled fit.";
   return fmt::format(
-      "The known gap of Eq. 16: at constant volume the pressure of the packing changes, most of all near jamming, "
-      "and the law has no dilatancy to follow it. The largest bias of P* is {}\u00a0% of the largest DEM value, in "
-      "{}.",
+      "The known gap of Eq. 16: at constant volume the pressure of the packing changes, most of all near jamming, and "
+      "the law has no dilatancy to follow it. The largest bias of P* is {}\u00a0% of the largest DEM value, in {}.",
       fixed(100 * worst->bias / worst->max_abs_data, 1), worst->test);
 }
 
@@ -112,11 +109,10 @@ Section choices(const chain::ReportInput& input) {
     section.blocks.push_back(open(figure));
   }
   if (section.blocks.empty())
-    section.blocks.push_back(text(
-        "No study of settings is in studies/. Error against cost of time step, strain rate, rows and packings is drawn "
-        "here after: grainlaw study chain SPEC.json --for PATH.json --vary KEY=VALUE... -o DIR/studies/NAME, DIR the "
-        "folder "
-        "of this calibration."));
+    section.blocks.push_back(
+        text("No study of settings is in studies/. Error against cost of time step, strain rate, rows and packings is "
+             "drawn here after: grainlaw study chain SPEC.json --for PATH.json --vary KEY=VALUE... -o "
+             "DIR/studies/NAME, DIR the folder of this calibration."));
   return section;
 }
 

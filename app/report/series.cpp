@@ -35,17 +35,13 @@ Series line_of(Text label, Colour colour, Line line, double width) {
   series.colour = colour;
   series.line = line;
   series.line_width = width;
+  if (line == Line::dashed) series.toggle = "published";
   return series;
 }
 
 const DensityCurve& density_curve(const std::string& quantity) {
   const auto& curves = density_curves();
   return *std::find_if(curves.begin(), curves.end(), [&](const auto& curve) { return curve.quantity == quantity; });
-}
-
-bool is_known(const DensityCurve& curve, const CalibratedLaw& law) {
-  return std::all_of(curve.groups.begin(), curve.groups.end(),
-                     [&](const char* group) { return has_values(law, group); });
 }
 
 std::vector<Observation> symbol_rows(const TestRecord& test, std::size_t points) {
@@ -55,15 +51,7 @@ std::vector<Observation> symbol_rows(const TestRecord& test, std::size_t points)
   return rows;
 }
 
-std::vector<Observation> line_rows(const TestRecord& test) {
-  constexpr std::size_t points = 60;
-  std::vector<Observation> rows;
-  const std::size_t stride = std::max<std::size_t>(1, test.rows.size() / points);
-  for (std::size_t i = 0; i < test.rows.size(); ++i) {
-    if (i % stride == 0 || i + 1 == test.rows.size()) rows.push_back(test.rows[i]);
-  }
-  return rows;
-}
+std::vector<Observation> line_rows(const TestRecord& test) { return thinned(test.rows, 60); }
 
 std::vector<std::uint64_t> seeds_of(const std::vector<TestRecord>& tests) {
   std::vector<std::uint64_t> seeds;

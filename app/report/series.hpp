@@ -2,6 +2,7 @@
 // Pieces that figures are put together from: points of entries, rows of a run, a curve of the law, axes; and which marker and
 // colour belong to which seed and density.
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -15,6 +16,11 @@
 
 namespace grainlaw::app::report {
 
+/// Of volume fractions that a law is drawn over.
+struct Range {
+  double from, to;
+};
+
 /// Labels of axes that many figures share, in the notation of text.hpp.
 inline constexpr const char* kDensityLabel = "volume fraction {ν} [–]";
 inline constexpr const char* kStrainLabel = "deviatoric strain {ε}_{dev} [–]";
@@ -22,7 +28,7 @@ inline constexpr const char* kStrainLabel = "deviatoric strain {ε}_{dev} [–]"
 /// A panel without series; labels and title in the notation of text.hpp, the title may be empty.
 Panel panel_of(const char* title, const char* x, const char* y);
 
-/// How a series looks; its points are still to come. Symbols of DEM runs are small and open.
+/// How a series looks; its points are still to come. Symbols of DEM runs are small and open; dashed lines have the toggle "published".
 Series symbols(Text label, Colour colour, Marker marker, double size = 3);
 Series open_symbols(Text label, Colour colour, Marker marker, double size = 3);
 Series line_of(Text label, Colour colour, Line line, double width = 1.8);
@@ -55,8 +61,17 @@ Series curve(Series style, double from, double to, const Function& function, int
 
 /// The law's curve over volume fraction that files call `quantity`.
 const DensityCurve& density_curve(const std::string& quantity);
-/// Whether all parameters that it reads are identified.
-bool is_known(const DensityCurve& curve, const CalibratedLaw& law);
+
+/// About `points` of `rows`, evenly spaced, and the last.
+template <class Row>
+std::vector<Row> thinned(const std::vector<Row>& rows, std::size_t points) {
+  std::vector<Row> few;
+  const std::size_t stride = std::max<std::size_t>(1, rows.size() / points);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i % stride == 0 || i + 1 == rows.size()) few.push_back(rows[i]);
+  }
+  return few;
+}
 
 /// Evenly spaced rows of a run: about `points` as symbols, more as a line, which ends with the last row.
 std::vector<Observation> symbol_rows(const TestRecord& test, std::size_t points);

@@ -47,6 +47,14 @@ std::string scale_svg(const Panel& panel, const Frame& frame) {
                      ticks, numbers);
 }
 
+/// What the i-th panel shows, in words: "title of the figure: ordinate over abscissa".
+std::string panel_name(const Figure& figure, std::size_t i) {
+  const Panel& panel = figure.panels[i];
+  const std::string title = to_plain(panel.title);
+  return fmt::format("{}: {}{} over {}", figure.title, title.empty() ? "" : title + ", ", to_plain(panel.y.label),
+                     to_plain(panel.x.label));
+}
+
 /// The scale, the frame, title and labels.
 std::string axes_svg(const Panel& panel, const Frame& frame) {
   const double centre = frame.left + frame.width / 2, middle = frame.top + frame.height / 2;
@@ -113,8 +121,7 @@ RenderedFigure render(const Figure& figure) {
     rendered.frames.push_back({shared_axis(sharing, true, std::max(3, static_cast<int>(rendered.width / 75))),
                                shared_axis(sharing, false, 5), 0, top, 0, figure.panel_height});
     for (const Series& series : panel.series) {
-      if (!series.toggle.empty() &&
-          std::find(rendered.toggles.begin(), rendered.toggles.end(), series.toggle) == rendered.toggles.end())
+      if (!series.toggle.empty() && std::ranges::find(rendered.toggles, series.toggle) == rendered.toggles.end())
         rendered.toggles.push_back(series.toggle);
     }
   }
@@ -144,13 +151,6 @@ RenderedFigure render(const Figure& figure) {
   rendered.undefined_points = unseen.undefined;
   rendered.outside_points = unseen.outside;
   return rendered;
-}
-
-std::string panel_name(const Figure& figure, std::size_t i) {
-  const Panel& panel = figure.panels[i];
-  const std::string title = to_plain(panel.title);
-  return fmt::format("{}: {}{} over {}", figure.title, title.empty() ? "" : title + ", ", to_plain(panel.y.label),
-                     to_plain(panel.x.label));
 }
 
 std::vector<const Series*> legend_entries(const Figure& figure) {

@@ -25,9 +25,6 @@ struct RenderedFigure {
 
 RenderedFigure render(const Figure& figure);
 
-/// What the i-th panel shows, in words: "title of the figure: ordinate over abscissa".
-std::string panel_name(const Figure& figure, std::size_t i);
-
 /// What a legend shows: the first series of each label.
 std::vector<const Series*> legend_entries(const Figure& figure);
 

@@ -37,7 +37,7 @@ struct Cell {
   Cell(const std::string& words) : text(plain(words)) {}
   Cell(const char* words) : text(plain(words)) {}
   Cell(std::integral auto count) : text(plain(std::to_string(count))), value(static_cast<double>(count)) {}
-  Cell(const std::string& words, double number) : text(plain(words)), value(number) {}
+  Cell(const std::string& words, double number, int shade = -1) : text(plain(words)), value(number), heat(shade) {}
 };
 
 enum class Content { words, symbol, number };  ///< of a column: may wrap, may not, aligned to the right

@@ -118,13 +118,12 @@ Table forest(const CalibratedLaw& law, Forest which) {
                                            {"", symbol, bar},
                                            {"ours ± standard error", number, estimate_cell}};
   if (which != Forest::own) columns.push_back({"published", number, [](auto& p) { return digits(p.published(), 5); }});
-  Table table = table_of(
-      which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
-      : which == Forest::ratios
-          ? "Parameters over the published value: ours with 95 % interval (dot, at the end where it lies beyond), "
-            "published (bar)"
-          : "Parameters that the paper does not have, over their own value",
-      "parameters.json", shown, columns);
+  Table table =
+      table_of(which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
+               : which == Forest::ratios  ? "Parameters over the published value: ours with 95 % interval (dot, at the "
+                                            "end where it lies beyond), published (bar)"
+                                          : "Parameters that the paper does not have, over their own value",
+               "parameters.json", shown, columns);
   // to both ends whatever is drawn, but no farther than none and twice the value
   table.bar_from = 1e300, table.bar_to = -1e300;
   for (const auto& row : table.rows) {
@@ -151,7 +150,7 @@ Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
   std::vector<ColumnOf<double>> columns{{"{ν}", number, [](double nu) { return decimals(nu, 2); }}};
   for (const DensityCurve& shown : density_curves()) {
     if (std::string_view(shown.quantity).starts_with("steady_") != (which == CurveGroup::steady_state)) continue;
-    const bool known = is_known(shown, law);
+    const bool known = has_values(law, shown);
     columns.push_back({shown.symbol, number, [&, known](double nu) -> Cell {
                          if (!known) return "not identified";
                          const double value = shown.of(ours, nu);
@@ -171,8 +170,7 @@ Table curve_comparison(const CalibratedLaw& law, CurveGroup which) {
 
 Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameters) {
   std::vector<Verdict> shown;
-  std::copy_if(verdicts.begin(), verdicts.end(), std::back_inserter(shown),
-               [&](const Verdict& v) { return !v.nu == of_parameters; });
+  std::ranges::copy_if(verdicts, std::back_inserter(shown), [&](const Verdict& v) { return !v.nu == of_parameters; });
   std::vector<ColumnOf<Verdict>> columns{
       {"mode", words, &Verdict::mode},
       {"quantity", words, &Verdict::quantity},
@@ -186,10 +184,9 @@ Table verdict_table(const std::vector<fit::Verdict>& verdicts, bool of_parameter
       {"verdict", words, &Verdict::verdict}};
   if (of_parameters) columns.erase(columns.begin() + 3);
   return table_of(
-      fmt::format("{} against the published: {} agree, {} differ, {} are inconclusive, {} have no error. "
-                  "Distance: difference over the standard error of a difference between our mean and one "
-                  "other packing; range: what chance may do, 95 %; inconclusive: within a range that is "
-                  "wider than what matters",
+      fmt::format("{} against the published: {} agree, {} differ, {} are inconclusive, {} have no error. Distance: "
+                  "difference over the standard error of a difference between our mean and one other packing; range: "
+                  "what chance may do, 95 %; inconclusive: within a range that is wider than what matters",
                   of_parameters ? "Parameters of Tables 2 and 3" : "Curves over density", count(shown, "agrees"),
                   count(shown, "differs"), count(shown, "inconclusive"), count(shown, "no error")),
       "calibration.json", shown, columns);
@@ -214,9 +211,8 @@ Table jamming_table(const std::vector<fit::Verdict>& verdicts) {
   std::vector<Jamming> modes;
   for (const char* mode : {"ISO", "UNI", "D2", "D3"}) {
     const auto verdict_on = [&](const char* parameter) -> const Verdict* {
-      const auto at = std::find_if(verdicts.begin(), verdicts.end(), [&](const Verdict& v) {
-        return !v.nu && v.mode == mode && v.quantity.ends_with(parameter);
-      });
+      const auto at = std::ranges::find_if(
+          verdicts, [&](const Verdict& v) { return !v.nu && v.mode == mode && v.quantity.ends_with(parameter); });
       return at == verdicts.end() ? nullptr : &*at;
     };
     const Jamming jamming{mode, verdict_on("coordination.nu_c"), verdict_on("pressure.nu_c")};

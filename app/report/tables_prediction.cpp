@@ -29,8 +29,7 @@ Table unseen_table(const std::vector<chain::PathError>& errors, bool predicted,
     return [=](const chain::PathError& e) {
       std::string words = fixed(100 * e.error[q], 1);
       if (std::isfinite(e.in_band[q])) words += " (" + fixed(100 * e.in_band[q], 0) + ")";
-      Cell shade(words, 100 * e.error[q]);
-      shade.heat = heat_of(e.error[q]);
+      Cell shade(words, 100 * e.error[q], heat_of(e.error[q]));
       shade.link = link(e);
       return shade;
     };

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "app/terminal/completion.hpp"
 #include "dem/runs/task_list.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
@@ -16,13 +17,6 @@ namespace grainlaw::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// One word of a shell.
-std::string quoted(const std::string& text) {
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 /// "1-3,7": as --array takes numbers.
 std::string ranges_of(std::vector<int> numbers) {
@@ -100,19 +94,20 @@ std::vector<fs::path> write_scripts(const fs::path& folder, const std::vector<in
                                     const SlurmOptions& options) {
   const fs::path place = folder / dem::kTasksFolder, array = place / "tasks.sbatch",
                  last = place / "calibration.sbatch";
-  const std::string program = quoted(fs::read_symlink("/proc/self/exe").string()), output = quoted(folder.string());
+  const std::string program = in_quotes(fs::read_symlink("/proc/self/exe").string()),
+                    output = in_quotes(folder.string());
   std::vector<fs::path> scripts;
   fs::remove(array);
   if (!tasks.empty()) {
-    write_durably(array, script("grainlaw-runs", quoted((place / "task-").string()) + "\"$SLURM_ARRAY_TASK_ID\".log",
+    write_durably(array, script("grainlaw-runs", in_quotes((place / "task-").string()) + "\"$SLURM_ARRAY_TASK_ID\".log",
                                 fmt::format("{} task {} \"$SLURM_ARRAY_TASK_ID\"", program, output), "",
                                 fmt::format("#SBATCH --array={}\n", ranges_of(tasks)), options));
     scripts.push_back(array);
   }
   write_durably(
-      last, script("grainlaw-calibrate", quoted((place / "calibration.log").string()),
-                   fmt::format("{} calibrate {} -o {}", program, quoted((place / "spec.json").string()), output),
-                   fmt::format("echo \"$code\" >{}\n", quoted((place / "calibration.exit").string())), "", options));
+      last, script("grainlaw-calibrate", in_quotes((place / "calibration.log").string()),
+                   fmt::format("{} calibrate {} -o {}", program, in_quotes((place / "spec.json").string()), output),
+                   fmt::format("echo \"$code\" >{}\n", in_quotes((place / "calibration.exit").string())), "", options));
   scripts.push_back(last);
   return scripts;
 }
@@ -123,7 +118,7 @@ std::vector<std::string> submit(const std::vector<fs::path>& scripts) {
   for (const fs::path& script : scripts) {
     const std::string after =
         jobs.empty() ? "" : fmt::format("--dependency=afterok:{} --kill-on-invalid-dep=yes ", jobs.back());
-    const Answer answer = answer_of(fmt::format("sbatch --parsable {}{}", after, quoted(script.string())));
+    const Answer answer = answer_of(fmt::format("sbatch --parsable {}{}", after, in_quotes(script.string())));
     const std::string job = answer.text.substr(0, answer.text.find_first_of(";\n"));
     if (answer.exit_code != 0 || job.empty() || job.find_first_not_of("0123456789") != std::string::npos)
       throw Error(fmt::format("{}: sbatch does not take it: {}", script.string(), one_line(answer.text, 300)));

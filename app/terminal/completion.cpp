@@ -36,13 +36,6 @@ std::string replaced(std::string text, const std::string& characters, const std:
   return text;
 }
 
-/// For single quotes of a POSIX shell.
-std::string in_quotes(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
-  return out + "'";
-}
-
 std::vector<std::string> names_below(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::App* below : commands_of(command)) names.push_back(below->get_name());
@@ -175,6 +168,12 @@ std::string fish_script(const CLI::App& app) {
 }
 
 }  // namespace
+
+std::string in_quotes(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + "'";
+}
 
 std::string completion_script(const CLI::App& app, Shell shell) {
   return shell == Shell::bash ? bash_script(app) : shell == Shell::zsh ? zsh_script(app) : fish_script(app);

@@ -9,6 +9,9 @@ namespace grainlaw::app {
 enum class Shell { bash, zsh, fish };
 constexpr auto names_of(Shell) { return std::array{"bash", "zsh", "fish"}; }
 
+/// One word of a POSIX shell.
+std::string in_quotes(const std::string& text);
+
 /// The script that the shell loads. `app` has all commands.
 std::string completion_script(const CLI::App& app, Shell shell);
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "model/files/execution.hpp"
+#include "model/files/output.hpp"
 
 namespace grainlaw::app {
 
@@ -12,6 +13,6 @@ struct Session : Execution {
 };
 
 /// Result of a command on stdout. Throws Error when it cannot be written.
-void print_result(const std::string& text);
+inline void print_result(const std::string& text) { write_as_named("-", text); }
 
 }  // namespace grainlaw::app

@@ -44,9 +44,7 @@ std::string verdict_of(const chain::SettingResult& judged) {
     text += " may be dominated: cheaper and as good or better, within chance: " + perhaps;
   else
     text += " is not dominated";
-  std::string lines;
-  for (const std::string& line : wrapped(text, 80)) lines += line + "\n";
-  return lines;
+  return fmt::format("{}\n", fmt::join(wrapped(text, 80), "\n"));
 }
 
 }  // namespace

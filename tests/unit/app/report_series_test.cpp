@@ -53,10 +53,10 @@ TEST(ReportSeries, RowsAreThinnedEvenlyAndALineEndsWithTheLast) {
 
 TEST(ReportSeries, ACurveOfTheLawIsKnownWhenAllThatItReadsIs) {
   CalibratedLaw law = test::report_scene().calibration.law;
-  EXPECT_TRUE(is_known(density_curve("P_star"), law));
+  EXPECT_TRUE(has_values(law, density_curve("P_star")));
   law.estimates[parameter_index("rattlers.phi_c")].status = Status::not_identified;
-  EXPECT_FALSE(is_known(density_curve("P_star"), law)) << "P* reads C through the rattlers";
-  EXPECT_TRUE(is_known(density_curve("C_star"), law));
+  EXPECT_FALSE(has_values(law, density_curve("P_star"))) << "P* reads C through the rattlers";
+  EXPECT_TRUE(has_values(law, density_curve("C_star")));
 }
 
 }  // namespace
