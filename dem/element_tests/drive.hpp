@@ -28,8 +28,7 @@ constexpr auto fields_of(std::type_identity<DriveOptions>) {
   return std::tuple{Field{&D::strain_rate, "strain_rate", "1/s", "", "peak of max(|eps_vol rate|, eps_dev rate)"},
                     Field{&D::quasi_static_step, "quasi_static_step", "", "",
                           "0: dynamics; above: no dynamics, but affine steps of at most this strain, each followed by "
-                          "a minimisation of "
-                          "energy"},
+                          "a minimisation of energy"},
                     Field{&D::profile, "driving", "", "", "profile of the strain rate in time"},
                     Field{&D::transport, "transport", "", "", "what moves with the cell: spheres or only its walls"}};
 }

@@ -1,7 +1,5 @@
 #include "dem/element_tests/element_run.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>

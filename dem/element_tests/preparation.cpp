@@ -20,25 +20,6 @@ double nu_end(const PreparationOptions& o) {
   return o.keep_unloading.empty() ? o.nu_start : *std::min_element(o.keep_unloading.begin(), o.keep_unloading.end());
 }
 
-/// Reports under the name of a stage, with the particle-steps of the stages before it added.
-RunControl with_stage(const RunControl& control, const std::string& stage, double work_before = 0) {
-  RunControl named = control;
-  if (control.report) {
-    named.report = [&control, stage, work_before](Progress progress) {
-      progress.stage = stage;
-      progress.work += work_before;
-      control.report(progress);
-    };
-  }
-  return named;
-}
-
-std::vector<StraightSegment> isotropic_segment(const Packing& from, double to_nu, bool portable) {
-  const double nu = volume_fraction(from);
-  const StrainRate direction = direction_of(Mode::ISO, "xyz", to_nu < nu);
-  return resolve({nu, Branch::loading, {{Mode::ISO, direction, ExtentKind::target_nu, to_nu}}}, portable);
-}
-
 /// Densities of a branch in the order in which it crosses them, each once.
 std::vector<double> crossing_order(std::vector<double> densities, Branch branch) {
   std::sort(densities.begin(), densities.end());
@@ -47,17 +28,8 @@ std::vector<double> crossing_order(std::vector<double> densities, Branch branch)
   return densities;
 }
 
-ElementTestOptions branch_options(const PreparationOptions& options) {
-  ElementTestOptions branch;
-  branch.engine = options.engine;
-  branch.drive = options.drive;
-  branch.relax = options.relax;
-  branch.rows = options.rows;
-  return branch;
-}
-
 ElementTestOptions gas_options(const PreparationOptions& options) {
-  ElementTestOptions gas = branch_options(options);
+  ElementTestOptions gas = test_options(options);
   gas.drive.strain_rate *= options.gas_compression_factor;
   gas.drive.quasi_static_step = 0;                                     // a gas has no equilibrium
   gas.warn_inertial_number = std::numeric_limits<double>::infinity();  // a gas is not meant to be quasi-static
@@ -112,19 +84,10 @@ class Preparation {
                        const StepObserver& on_step) {
     Checkpoint* checkpoint = std::get_if<Checkpoint>(&from);
     if (checkpoint) steps_before_ = checkpoint->steps_before;
-    Checkpointing staged = checkpointing_;
-    if (staged.save) {
-      staged.save = [&](const Checkpoint& at) {
-        Checkpoint named = at;
-        named.stage = stage;
-        named.steps_before = steps_before_;
-        named.seconds += seconds_before_;
-        checkpointing_.save(named);
-      };
-    }
+    const Checkpointing staged = with_stage(checkpointing_, stage, steps_before_, seconds_before_);
     const RunControl control = with_stage(
         control_, stage, static_cast<double>(steps_before_) * static_cast<double>(options_.packing.particles));
-    const auto segment = isotropic_segment(start_of(from), to_nu, options_.engine.portable_bits);
+    const auto segment = isotropic_segment(volume_fraction(start_of(from)), to_nu, options_.engine.portable_bits);
     ElementTest test = checkpoint
                            ? continue_element_test(std::move(*checkpoint), segment, options, control, on_step, staged)
                            : run_element_test(std::get<State>(from), segment, options, control, on_step, staged);
@@ -167,7 +130,7 @@ class Preparation {
         keep_state(stepper.simulation().state());
       }
     };
-    ElementTest test = drive_to(std::move(from), to_nu, branch_options(options_), to_string(branch), on_step);
+    ElementTest test = drive_to(std::move(from), to_nu, test_options(options_), to_string(branch), on_step);
     sink_.series(branch, test.rows);
     return std::move(test.end);
   }
@@ -185,6 +148,41 @@ void check_sink(const PreparationSink& sink) {
 }
 
 }  // namespace
+
+ElementTestOptions test_options(const PreparationOptions& options) {
+  return {options.engine, options.drive, options.relax, options.rows};
+}
+
+std::vector<StraightSegment> isotropic_segment(double from_nu, double to_nu, bool portable) {
+  const StrainRate direction = direction_of(Mode::ISO, "xyz", to_nu < from_nu);
+  return resolve({from_nu, Branch::loading, {{Mode::ISO, direction, ExtentKind::target_nu, to_nu}}}, portable);
+}
+
+RunControl with_stage(const RunControl& control, const std::string& stage, double work_before) {
+  RunControl named = control;
+  if (control.report) {
+    named.report = [&control, stage, work_before](Progress progress) {
+      progress.stage = stage;
+      progress.work += work_before;
+      control.report(progress);
+    };
+  }
+  return named;
+}
+
+Checkpointing with_stage(const Checkpointing& checkpointing, const std::string& stage, std::uint64_t steps_before,
+                         double seconds_before) {
+  Checkpointing named = checkpointing;
+  if (checkpointing.save) {
+    named.save = [&checkpointing, stage, steps_before, seconds_before](Checkpoint at) {
+      at.stage = stage;
+      at.steps_before = steps_before;
+      at.seconds += seconds_before;
+      checkpointing.save(at);
+    };
+  }
+  return named;
+}
 
 void check(const PreparationOptions& o) {
   check(o.choice, o.engine, o.drive);

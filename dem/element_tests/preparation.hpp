@@ -46,6 +46,17 @@ constexpr auto fields_of(std::type_identity<PreparationOptions>) {
 }
 static_assert(tells_every_member<PreparationOptions>());
 
+/// What element tests take of a preparation's options.
+ElementTestOptions test_options(const PreparationOptions& options);
+
+/// The path between two volume fractions.
+std::vector<StraightSegment> isotropic_segment(double from_nu, double to_nu, bool portable = false);
+
+/// Reports and saves under the name of a stage, with what the stages before it took added; the arguments must live on.
+RunControl with_stage(const RunControl& control, const std::string& stage, double work_before = 0);
+Checkpointing with_stage(const Checkpointing& checkpointing, const std::string& stage, std::uint64_t steps_before = 0,
+                         double seconds_before = 0);
+
 /// Throws InvalidInput "KEY: ..." unless the densities increase, those kept lie on their branches and the gas compression has a
 /// rate.
 void check(const PreparationOptions& options);

@@ -1,7 +1,6 @@
 #include "dem/engine/averages.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "dem/engine/state.hpp"
 

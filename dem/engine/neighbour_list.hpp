@@ -25,6 +25,11 @@ struct NeighbourList {
 /// Farthest that a file may put a sphere, in cells: beyond, the two are not in one unit.
 constexpr double kMaxCellsAway = 1000;
 
+/// Of an offset or normal and its opposite, one: of a sphere that touches its own image, each contact once.
+inline bool first_of_opposites(const Eigen::Vector3d& n) {
+  return n.z() != 0 ? n.z() > 0 : n.y() != 0 ? n.y() > 0 : n.x() > 0;
+}
+
 /// Wraps the fractions of the packing into [0, 1].
 void wrap(Packing& packing);
 

@@ -26,7 +26,7 @@ struct EngineOptions {
   Precision precision = Precision::mixed;
   bool portable_bits = false;  ///< the same bits also on machines without fused multiply-add (before AVX2), slowly
   int threads = 1;             ///< threads of one run
-  bool refuse_deep_overlaps = true;  ///< of pairs that nothing holds; false to watch them part (hard case D17)
+  bool refuse_deep_overlaps = true;  ///< of pairs that nothing holds; false to watch them (D17, states at rest)
 };
 constexpr auto fields_of(std::type_identity<EngineOptions>) {
   using E = EngineOptions;
@@ -39,7 +39,7 @@ constexpr auto fields_of(std::type_identity<EngineOptions>) {
       Field{&E::portable_bits, "portable_bits", "", "",
             "the same bits also on machines without fused multiply-add (before AVX2), slowly"},
       Field{&E::threads, "threads", "", "", "threads of one run", Rule::free},
-      Field{&E::refuse_deep_overlaps, "refuse_deep_overlaps", "", "", "of tests alone", Rule::free}};
+      Field{&E::refuse_deep_overlaps, "refuse_deep_overlaps", "", "", "overlaps that nothing holds", Rule::free}};
 }
 static_assert(tells_every_member<EngineOptions>());
 

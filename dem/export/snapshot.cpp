@@ -6,12 +6,6 @@
 #include "dem/engine/contacts.hpp"
 
 namespace grainlaw::dem {
-namespace {
-
-/// Of a sphere and its own image, one of both.
-bool first_of_both(const Eigen::Vector3d& n) { return n.z() != 0 ? n.z() > 0 : n.y() != 0 ? n.y() > 0 : n.x() > 0; }
-
-}  // namespace
 
 Snapshot snapshot_of(const State& state, const Eigen::Matrix3d& L) {
   Snapshot snapshot;
@@ -24,7 +18,7 @@ Snapshot snapshot_of(const State& state, const Eigen::Matrix3d& L) {
   for (std::size_t i = 0; i < state.packing.size(); ++i) {
     visit_contacts<false>(view->field, i, [&](const Contact& c) {
       const Eigen::Vector3d n(c.nx, c.ny, c.nz);
-      if (c.j > i || (c.j == i && first_of_both(n)))
+      if (c.j > i || (c.j == i && first_of_opposites(n)))
         snapshot.contacts.push_back({i, c.j, c.distance * n, c.force * n, c.delta});
     });
   }

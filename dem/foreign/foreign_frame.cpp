@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "model/files/one_line.hpp"
 
 namespace grainlaw::dem {

@@ -59,9 +59,7 @@ class LammpsPreparation {
   LammpsTest test_of(const std::string& name) const {
     LammpsTest test;
     test.name = name;
-    test.options.engine = options_.engine;
-    test.options.drive = options_.drive;
-    test.options.rows = options_.rows;
+    test.options = test_options(options_);
     test.contacts = options_.choice.contacts;
     return test;
   }
@@ -73,25 +71,12 @@ class LammpsPreparation {
     Packing begin = start.packing;
     if (checkpoint) begin.H = checkpoint->segment_H;
     const double nu = volume_fraction(begin);
-    test.segments = resolve(
-        {nu, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to_nu < nu), ExtentKind::target_nu, to_nu}}});
+    test.segments = isotropic_segment(nu, to_nu);
     for (Keep& keep : test.keep) keep.e = std::abs(std::log(keep.e / nu)) / 3;  // e was the density
     test.restart = from.restart;
-    Checkpointing staged = checkpointing_;
-    if (staged.save)
-      staged.save = [&](const Checkpoint& at) {
-        Checkpoint named = at;
-        named.stage = stage;
-        checkpointing_.save(named);
-      };
-    RunControl control = control_;
-    if (control_.report)
-      control.report = [&](Progress progress) {
-        progress.stage = "LAMMPS, " + stage;
-        progress.work += work_before_;
-        control_.report(progress);
-      };
-    LammpsResult done = run_lammps_test(place_, test, start, std::move(checkpoint), control, staged);
+    LammpsResult done =
+        run_lammps_test(place_, test, start, std::move(checkpoint),
+                        with_stage(control_, "LAMMPS, " + stage, work_before_), with_stage(checkpointing_, stage));
     work_before_ += static_cast<double>(done.test.steps) * static_cast<double>(start.packing.size());
     if (sink_.warn) {
       for (const std::string& warning : done.test.warnings) sink_.warn(stage + ": " + warning);

@@ -4,7 +4,6 @@
 #include <thread>
 
 #include "dem/engine/run_watch.hpp"
-#include "dem/runs/feasibility.hpp"
 #include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {

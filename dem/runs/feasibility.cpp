@@ -27,11 +27,6 @@ double shortest_collision(const PackingOptions& packing) {
   return collision_time(packing.material, lightest_pair(packing));
 }
 
-std::vector<StraightSegment> isotropic(double from, double to) {
-  return resolve(
-      {from, Branch::loading, {{Mode::ISO, direction_of(Mode::ISO, "xyz", to < from), ExtentKind::target_nu, to}}});
-}
-
 }  // namespace
 
 double expected_steps(const PreparationOptions& o, const std::vector<StraightSegment>& segments) {
@@ -51,9 +46,9 @@ double expected_steps(const PreparationOptions& o, const std::vector<StraightSeg
 double expected_steps(const PreparationOptions& o) {
   PreparationOptions gas = o;
   gas.drive.quasi_static_step = 0;
-  return expected_steps(gas, isotropic(o.nu_gas, o.nu_start)) / o.gas_compression_factor +
-         expected_steps(o, isotropic(o.nu_start, o.nu_max)) +
-         expected_steps(o, isotropic(o.nu_max, o.nu_end.value_or(o.nu_start)));
+  return expected_steps(gas, isotropic_segment(o.nu_gas, o.nu_start)) / o.gas_compression_factor +
+         expected_steps(o, isotropic_segment(o.nu_start, o.nu_max)) +
+         expected_steps(o, isotropic_segment(o.nu_max, o.nu_end.value_or(o.nu_start)));
 }
 
 void complete_preparation(PreparationOptions& o, const std::string& name) {

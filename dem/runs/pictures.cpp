@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "dem/files/state_file.hpp"
 #include "dem/runs/preparation_folder.hpp"
@@ -36,35 +35,25 @@ const PlannedTest* shown_test(const std::vector<PlannedTest>& tests) {
   return *middle;
 }
 
-/// Rows with three decimals: a thousandth of a radius is a tenth of a pixel.
+/// To three decimals: a thousandth of a radius is a tenth of a pixel.
 template <class Rows>
-OrderedJson rounded(const Rows& rows) {
-  OrderedJson all = OrderedJson::array();
-  for (const auto& row : rows) {
-    OrderedJson one = OrderedJson::array();
-    for (const double value : row) one.push_back(std::round(1e3 * value) / 1e3);
-    all.push_back(std::move(one));
+void round_all(Rows& rows) {
+  for (auto& row : rows) {
+    for (double& value : row) value = std::round(1e3 * value) / 1e3;
   }
-  return all;
 }
 
-OrderedJson to_json(const PackingPicture& picture) {
-  return {{"width", picture.width},
-          {"height", picture.height},
-          {"circles", rounded(picture.circles)},
-          {"chains", rounded(picture.chains)},
-          {"count", picture.count},
-          {"force", picture.force}};
+OrderedJson to_json(PackingPicture picture) {
+  round_all(picture.circles);
+  round_all(picture.chains);
+  OrderedJson json = OrderedJson::object();
+  for_each_field<PackingPicture>([&](const auto& field) { json[field.name] = picture.*field.access; });
+  return json;
 }
 
 PackingPicture from_json(const Json& json) {
   PackingPicture picture;
-  json.at("width").get_to(picture.width);
-  json.at("height").get_to(picture.height);
-  json.at("circles").get_to(picture.circles);
-  json.at("chains").get_to(picture.chains);
-  json.at("count").get_to(picture.count);
-  json.at("force").get_to(picture.force);
+  for_each_field<PackingPicture>([&](const auto& field) { json.at(field.name).get_to(picture.*field.access); });
   if (!(picture.width > 0 && picture.height > 0)) throw InvalidInput("width and height must be positive");
   for (const auto* rose : {&picture.count, &picture.force}) {
     if (rose->size() != std::size_t{kRoseBins} && !(picture.count.empty() && picture.force.empty()))

@@ -10,7 +10,6 @@
 #include "dem/runs/feasibility.hpp"
 #include "dem/runs/path_frames.hpp"
 #include "dem/runs/preparation_folder.hpp"
-#include "dem/runs/spec_file.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
@@ -212,10 +211,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   const std::string key = run_key(request);
   if (auto record = sound_run(store, key, policy)) return *record;
   const Stopwatch stopwatch;
-  ElementTestOptions options;
-  options.engine = o.engine;
-  options.drive = o.drive;
-  options.relax = o.relax;
+  ElementTestOptions options = test_options(o);
   options.rows = test.rows;
   const fs::path folder = policy.resume ? store.reopen(key) : store.begin(key);
   const CheckpointFiles checkpoints(folder, key, policy);

@@ -1,7 +1,5 @@
 #include "dem/runs/simulation.hpp"
 
-#include <fmt/format.h>
-
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
 #include "dem/runs/dataset_runs.hpp"

@@ -14,12 +14,6 @@ namespace {
 
 constexpr int kFewestContacts = 4;  // of a frictionless sphere that carries load
 
-bool first_of_opposites(const Eigen::Vector3d& n) {
-  if (n.z() != 0) return n.z() > 0;
-  if (n.y() != 0) return n.y() > 0;
-  return n.x() > 0;
-}
-
 Eigen::Vector3d fraction(const Packing& p, std::size_t i) { return {p.sx[i], p.sy[i], p.sz[i]}; }
 
 /// For each sphere the spheres that it touches, one entry for each contact.

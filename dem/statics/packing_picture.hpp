@@ -20,6 +20,7 @@ struct PackingPicture {
       chains;                        ///< of contacts within ⟨r⟩/2 of the plane: both centres, force over the mean
   std::vector<double> count, force;  ///< roses over 180 degrees, kRoseBins each
 };
+GRAINLAW_FIELDS(PackingPicture, width, height, circles, chains, count, force);
 
 inline constexpr double kPictureSize = 40;
 inline constexpr int kRoseBins = 18;

@@ -1,8 +1,6 @@
 #include "dem/engine/lanes/lane_engine.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <type_traits>
 #include <utility>
 
 #include "dem/engine/state.hpp"

@@ -8,6 +8,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "dem/engine/lanes/lane_dispatch.hpp"
 #include "dem/engine/lanes/lane_drift-inl.hpp"
 #include "dem/engine/lanes/lane_vectors-inl.hpp"
 
@@ -228,30 +229,18 @@ LaneSums force_kick_drift_on(Lanes<Real>& lanes, const LaneStep& step, const Lan
                              : force_kick_drift_of<portable, false>(lanes, step, next, begin, end, how);
 }
 
-// What HWY_EXPORT needs: plain functions. One instance is enough where the machine can fuse.
-#define GRAINLAW_BY_BITS(function, ...) \
-  (step.portable_bits && !kHasFused ? function<!kHasFused>(__VA_ARGS__) : function<false>(__VA_ARGS__))
-#define GRAINLAW_PASSES(Real, name)                                                                               \
-  void write_rows_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {          \
-    GRAINLAW_BY_BITS(write_rows_on, lanes, step, begin, end);                                                     \
-  }                                                                                                               \
-  double farthest_moved2_##name(const Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) { \
-    return GRAINLAW_BY_BITS(farthest_moved2_on, lanes, step, begin, end);                                         \
-  }                                                                                                               \
-  Drifted kick_and_drift_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {    \
-    return GRAINLAW_BY_BITS(kick_and_drift_on, lanes, step, begin, end);                                          \
-  }                                                                                                               \
-  LaneSums force_and_kick_##name(Lanes<Real>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {  \
-    return GRAINLAW_BY_BITS(force_and_kick_on, lanes, step, begin, end);                                                \
-  }                                                                                                               \
-  LaneSums force_kick_drift_##name(Lanes<Real>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, \
-                                   std::size_t end, Drifted& how) {                                               \
-    return GRAINLAW_BY_BITS(force_kick_drift_on, lanes, step, next, begin, end, how);                                \
-  }
-GRAINLAW_PASSES(float, mixed)
-GRAINLAW_PASSES(double, full)
-#undef GRAINLAW_PASSES
-#undef GRAINLAW_BY_BITS
+// One instance is enough where the machine can fuse.
+#define GRAINLAW_CALL(pass_on, ...) \
+  (step.portable_bits && !kHasFused ? pass_on<!kHasFused>(__VA_ARGS__) : pass_on<false>(__VA_ARGS__))
+#define GRAINLAW_PASSES(PASS)                                                                                          \
+  PASS(void, write_rows, , (const LaneStep& step, std::size_t begin, std::size_t end), (step, begin, end))             \
+  PASS(double, farthest_moved2, const, (const LaneStep& step, std::size_t begin, std::size_t end), (step, begin, end)) \
+  PASS(Drifted, kick_and_drift, , (const LaneStep& step, std::size_t begin, std::size_t end), (step, begin, end))      \
+  PASS(LaneSums, force_and_kick, , (const LaneStep& step, std::size_t begin, std::size_t end), (step, begin, end))     \
+  PASS(LaneSums, force_kick_drift, ,                                                                                   \
+       (const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end, Drifted& how),                 \
+       (step, next, begin, end, how))
+GRAINLAW_PASSES(GRAINLAW_PLAIN_PASS)
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -263,49 +252,8 @@ HWY_AFTER_NAMESPACE();
 
 namespace grainlaw::dem {
 
-HWY_EXPORT(write_rows_mixed);
-HWY_EXPORT(write_rows_full);
-HWY_EXPORT(farthest_moved2_mixed);
-HWY_EXPORT(farthest_moved2_full);
-HWY_EXPORT(kick_and_drift_mixed);
-HWY_EXPORT(kick_and_drift_full);
-HWY_EXPORT(force_and_kick_mixed);
-HWY_EXPORT(force_and_kick_full);
-HWY_EXPORT(force_kick_drift_mixed);
-HWY_EXPORT(force_kick_drift_full);
+GRAINLAW_PASSES(GRAINLAW_DISPATCHED_PASS)
 
-void write_rows(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(write_rows_mixed)(lanes, step, begin, end);
-}
-void write_rows(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(write_rows_full)(lanes, step, begin, end);
-}
-double farthest_moved2(const Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(farthest_moved2_mixed)(lanes, step, begin, end);
-}
-double farthest_moved2(const Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(farthest_moved2_full)(lanes, step, begin, end);
-}
-Drifted kick_and_drift(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(kick_and_drift_mixed)(lanes, step, begin, end);
-}
-Drifted kick_and_drift(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(kick_and_drift_full)(lanes, step, begin, end);
-}
-LaneSums force_and_kick(Lanes<float>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(force_and_kick_mixed)(lanes, step, begin, end);
-}
-LaneSums force_and_kick(Lanes<double>& lanes, const LaneStep& step, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(force_and_kick_full)(lanes, step, begin, end);
-}
-LaneSums force_kick_drift(Lanes<float>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
-                          Drifted& how) {
-  return HWY_DYNAMIC_DISPATCH(force_kick_drift_mixed)(lanes, step, next, begin, end, how);
-}
-LaneSums force_kick_drift(Lanes<double>& lanes, const LaneStep& step, const LaneStep& next, std::size_t begin, std::size_t end,
-                          Drifted& how) {
-  return HWY_DYNAMIC_DISPATCH(force_kick_drift_full)(lanes, step, next, begin, end, how);
-}
 std::vector<std::string> vector_targets() {
   hwy::SetSupportedTargetsForTest(0);
   std::vector<std::string> names;

@@ -11,6 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "dem/engine/lanes/lane_dispatch.hpp"
 #include "dem/engine/lanes/lane_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -136,18 +137,13 @@ void order_by_key_on(std::int32_t* key, const std::uint32_t* value, std::size_t 
   }
 }
 
-double choose_near_skins_mixed(Lanes<float>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
-  return choose_near_skins_on(lanes, edge, skins, begin, end);
-}
-double choose_near_skins_full(Lanes<double>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
-  return choose_near_skins_on(lanes, edge, skins, begin, end);
-}
-void pick_near_mixed(Lanes<float>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
-  pick_near_on(lanes, edge, begin, end);
-}
-void pick_near_full(Lanes<double>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
-  pick_near_on(lanes, edge, begin, end);
-}
+#define GRAINLAW_CALL(pass_on, ...) pass_on(__VA_ARGS__)
+#define GRAINLAW_PASSES(PASS)                                                                           \
+  PASS(double, choose_near_skins, ,                                                                     \
+       (const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end), \
+       (edge, skins, begin, end))                                                                       \
+  PASS(void, pick_near, , (const std::array<double, 3>& edge, std::size_t begin, std::size_t end), (edge, begin, end))
+GRAINLAW_PASSES(GRAINLAW_PLAIN_PASS)
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
@@ -157,25 +153,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace grainlaw::dem {
 
-HWY_EXPORT(choose_near_skins_mixed);
-HWY_EXPORT(choose_near_skins_full);
-HWY_EXPORT(pick_near_mixed);
-HWY_EXPORT(pick_near_full);
+GRAINLAW_PASSES(GRAINLAW_DISPATCHED_PASS)
 HWY_EXPORT(find_near_on);
 HWY_EXPORT(order_by_key_on);
 
-double choose_near_skins(Lanes<float>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(choose_near_skins_mixed)(lanes, edge, skins, begin, end);
-}
-double choose_near_skins(Lanes<double>& lanes, const std::array<double, 3>& edge, const NearSkins& skins, std::size_t begin, std::size_t end) {
-  return HWY_DYNAMIC_DISPATCH(choose_near_skins_full)(lanes, edge, skins, begin, end);
-}
-void pick_near(Lanes<float>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(pick_near_mixed)(lanes, edge, begin, end);
-}
-void pick_near(Lanes<double>& lanes, const std::array<double, 3>& edge, std::size_t begin, std::size_t end) {
-  HWY_DYNAMIC_DISPATCH(pick_near_full)(lanes, edge, begin, end);
-}
 FoundNear find_near(const SearchField& field, std::size_t i, std::span<const SearchRange> ranges, float narrower,
                     std::uint32_t* found) {
   return HWY_DYNAMIC_DISPATCH(find_near_on)(field, i, ranges, narrower, found);
