@@ -106,9 +106,9 @@ double end_of(ProfiledCost cost, const FreeParameter& p, double best, double ste
               double unit, std::vector<ProfilePoint>& points) {
   // sqrt(D)/t is linear where the cost is a parabola: one at the end of the interval.
   const auto distance = [&](double value) {
-    const double excess = std::max(0.0, cost(value) - minimum) / unit;
+    const double more = cost(value) - minimum, excess = std::isnan(more) ? more : std::max(0.0, more) / unit;
     points.push_back({value, excess});
-    return std::isnan(excess) ? kUndefined : std::sqrt(excess);
+    return std::sqrt(excess);
   };
   const double sign = bound > best ? 1 : -1;
   double inside = best, at_inside = 0, outside = kUndefined, at_outside = kUndefined;
@@ -187,7 +187,7 @@ std::string doubt(const Estimate& estimate) {
 void profile_doubtful(const Problem& problem, int threads, const RunControl& control, StageFit& fit) {
   const std::vector<FreeParameter>& parameters = problem.parameters;
   const Solution& solution = fit.solution;
-  if (!solution.defined || parameters.size() < 2) return;
+  if (!solution.defined || parameters.size() < 2 || problem.loss == Loss::huber) return;
   const Inflation inflation = inflation_of(fit);
   if (std::isnan(inflation.mean)) return;
   for (std::size_t k = 0; k < parameters.size(); ++k) {

@@ -110,6 +110,37 @@ TEST(Profile, OfAParameterThatActsOnNothingIsNotBounded) {
   EXPECT_LT(rate->lower, 10);
 }
 
+TEST(Profile, WhereTheModelIsNotDefinedThereIsNoExcess) {
+  const std::vector<FreeParameter> parameters{{"level", 5, -10, 10, 1}, {"slope", 0, -10, 10, 1}};
+  const Estimate slope = profiled(parameters, blocks_of(kStraight, 5, 0)).stage.estimates[1].estimate;
+  const double defined = slope.value + 0.9 * slope.half_width();
+  const auto partly = [&](const double* x, double t, double* d) {
+    const double y = kStraight(x, t, d);
+    return x[1] > defined ? std::nan("") : y;
+  };
+  const StageFit fit = profiled(parameters, blocks_of(partly, 5, 0));
+  ASSERT_EQ(fit.stage.profiles.size(), 1u);
+  const Profile& profile = fit.stage.profiles[0];
+  EXPECT_TRUE(std::isnan(profile.upper));
+  EXPECT_NEAR(profile.lower, slope.value - slope.half_width(), 1e-6 * slope.half_width());
+  int beyond = 0;
+  for (const ProfilePoint& p : profile.points) {
+    if (p.value <= defined) continue;
+    ++beyond;
+    EXPECT_TRUE(std::isnan(p.excess)) << p.value;
+  }
+  EXPECT_GT(beyond, 0);
+}
+
+// Its weights follow the fit: a refit by squares is another cost, far above it everywhere.
+TEST(Profile, NoneByHubersLoss) {
+  const std::vector<FreeParameter> parameters{{"level", 0, -10, 10, 1}, {"slope", 0, -10, 10, 1}};
+  const Problem problem{parameters, blocks_of(kStraight, 5, 0), Loss::huber};
+  StageFit fit = fit_stage("stage", "", problem, "look elsewhere", 1, {});
+  profile_doubtful(problem, 1, {}, fit);
+  EXPECT_TRUE(fit.stage.profiles.empty());
+}
+
 TEST(Profile, OnlyOfWhatIsDoubtful) {
   EXPECT_EQ(doubt({1, 0.1, Status::fitted, "", 5}), "");
   EXPECT_NE(doubt({1, 0.5, Status::fitted, "", 5}), "");  // t = 2.57
