@@ -22,12 +22,14 @@ bool has_value(const CalibratedLaw& law, std::size_t i) { return law.estimates[i
 
 /// Parameters, or groups of them, that the equations of `rung` read.
 std::vector<std::string_view> read_by(Rung rung, Coupling coupling) {
-  std::vector<std::string_view> groups{"coordination", "rattlers",         "pressure",
-                                       "shear.nu_c",   "stress_ratio_max", "stress_rate"};
-  if (rung != Rung::reduced) groups.insert(groups.end(), {"fabric_max", "fabric_rate"});
+  std::vector<std::string_view> groups{"coordination", "rattlers", "pressure", "shear.nu_c", "stress_ratio_max"};
   if (rung == Rung::memory)
-    groups.insert(groups.end(), {"steady_coordination", "steady_rattlers", "steady_pressure", "memory"});
-  if (rung != Rung::reduced) groups.push_back(coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2");
+    groups.insert(groups.end(), {"fabric_max", "steady_coordination", "steady_rattlers", "steady_pressure", "memory"});
+  else
+    groups.push_back("stress_rate");
+  if (rung == Rung::evolution)
+    groups.insert(groups.end(),
+                  {"fabric_max", "fabric_rate", coupling == Coupling::single ? "anisotropy.a0" : "anisotropy.a2"});
   return groups;
 }
 

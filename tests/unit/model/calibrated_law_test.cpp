@@ -48,18 +48,21 @@ TEST(CalibratedLaw, EachRungLacksWhatItsEquationsRead) {
   using Rungs = std::set<Rung>;
   const Rungs all{kRungs.begin(), kRungs.end()}, none{};
   // Eqs. (11), (12), (14) of ISO and Eq. (20): by all of them
-  for (const char* name : {"coordination.C1", "rattlers.phi_v", "pressure.nu_c", "shear.nu_c",
-                           "stress_ratio_max.Q_limit", "stress_rate.Q_c"})
+  for (const char* name :
+       {"coordination.C1", "rattlers.phi_v", "pressure.nu_c", "shear.nu_c", "stress_ratio_max.Q_limit"})
     EXPECT_EQ(rungs_without(name, Coupling::energy), none) << name;
-  for (const char* name : {"fabric_max.alpha", "fabric_rate.Q_limit"})  // P* and s of the reduced law need no fabric
-    EXPECT_EQ(rungs_without(name, Coupling::energy), Rungs{Rung::reduced}) << name;
+  EXPECT_EQ(rungs_without("fabric_max.alpha", Coupling::energy),
+            Rungs{Rung::reduced});  // whose P* and s need no fabric
+  EXPECT_EQ(rungs_without("stress_rate.Q_c", Coupling::energy), Rungs{Rung::memory})
+      << "which has G and lambda for rates";
+  EXPECT_EQ(rungs_without("fabric_rate.Q_limit", Coupling::energy), (Rungs{Rung::reduced, Rung::memory}));
   for (const char* name :
        {"steady_coordination.alpha", "steady_rattlers.phi_c", "steady_pressure.p0", "memory.G", "memory.m"})
     EXPECT_EQ(rungs_without(name, Coupling::energy), (Rungs{Rung::reduced, Rung::evolution})) << name;
   // one coefficient of anisotropy, by the coupling; none of it by the reduced law
-  EXPECT_EQ(rungs_without("anisotropy.a2", Coupling::energy), Rungs{Rung::reduced});
+  EXPECT_EQ(rungs_without("anisotropy.a2", Coupling::energy), (Rungs{Rung::reduced, Rung::memory}));
   EXPECT_EQ(rungs_without("anisotropy.a2", Coupling::single), all);
-  EXPECT_EQ(rungs_without("anisotropy.a0", Coupling::single), Rungs{Rung::reduced});
+  EXPECT_EQ(rungs_without("anisotropy.a0", Coupling::single), (Rungs{Rung::reduced, Rung::memory}));
   EXPECT_EQ(rungs_without("anisotropy.a0", Coupling::energy), all);
   for (const char* name : {"overlap.D", "fabric.g3", "anisotropy.a1"})
     EXPECT_EQ(rungs_without(name, Coupling::energy), all) << name;
@@ -87,7 +90,10 @@ TEST(CalibratedLaw, RungsThatLackTheSameAreNamedInOneLine) {
   EXPECT_EQ(left_out_rungs(law), Lines{memory});
   forget(law, "anisotropy.a2");
   EXPECT_EQ(left_out_rungs(law),
-            Lines{"evolution, memory left out: parameters.anisotropy.a2 is not identified: not in these data"});
+            (Lines{"evolution left out: parameters.anisotropy.a2 is not identified: not in these data", memory}));
+  forget(law, "fabric_max.Q_c");
+  EXPECT_EQ(left_out_rungs(law),
+            Lines{"evolution, memory left out: parameters.fabric_max.Q_c is not identified: not in these data"});
 }
 
 TEST(CalibratedLaw, NoDecayIsNeededWithoutAnExponential) {
