@@ -111,10 +111,10 @@ Fitted fitted(const Dataset& dataset, const fs::path& folder, const fit::Calibra
   all.modes.descriptions = part(2, "fit of the other modes", [&](const RunControl& control) {
     return fit::describe(described_tests(dataset), law.parameters.isotropic.pressure.nu_c, options, control);
   });
-  all.modes.verdicts = verdicts_of(law, all.modes.descriptions, dataset.seeds.size());
+  all.modes.verdicts = verdicts_of(law, all.modes.descriptions, all.calibration.size.packings);
   std::vector<TestRecord> shown = tests;
   for (const TestRecord& test : tests_of(dataset, Role::description)) shown.push_back(test);
-  all.modes.claims = claims_of(shown, law, all.modes.descriptions, options.steady_from);
+  all.modes.claims = claims_of(shown, all.calibration, all.modes.descriptions, options.steady_from);
   set_aside_other_material(all.modes, tests);
   watch.end();
   all.paths = fitted_paths(law, shown, execution);

@@ -1,6 +1,7 @@
 #include "fit/describe.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "fit/data/data_set.hpp"
 #include "fit/data/density_series.hpp"
@@ -17,7 +18,10 @@ bool is_uniaxial(const TestRecord& test) {
 }
 
 /// What is said of `name` once its stages have run.
-Description finished(const std::string& name, Calibration calibration) {
+Description finished(const std::string& name, Calibration calibration, const std::vector<const TestRecord*>& tests) {
+  std::set<std::uint64_t> seeds;
+  for (const TestRecord* test : tests) seeds.insert(test->packing.seed);
+  calibration.size.packings = static_cast<int>(seeds.size());
   calibration.law.covariance = calibration.errors.covariance();
   calibration.law.converged = all_converged(calibration);
   return {name, std::move(calibration)};
@@ -45,7 +49,7 @@ std::vector<Description> describe(const std::vector<TestRecord>& tests, double n
       for (const DensityPoint& p : s.points)
         calibration.law.range.nu_max = std::max(calibration.law.range.nu_max, p.nu);
     }
-    all.push_back(finished("UNI", std::move(calibration)));
+    all.push_back(finished("UNI", std::move(calibration), uniaxial));
   }
 
   for (const Mode mode : {Mode::D2, Mode::D3}) {
@@ -63,7 +67,8 @@ std::vector<Description> describe(const std::vector<TestRecord>& tests, double n
                                                      [](const ShearFit& a, const ShearFit& b) { return a.nu < b.nu; });
       calibration.law.range.nu_min = least->nu;
       calibration.law.range.nu_max = most->nu;
-      all.push_back(finished(to_string(mode) + (branch == Branch::loading ? "-loading" : ""), std::move(calibration)));
+      all.push_back(finished(to_string(mode) + (branch == Branch::loading ? "-loading" : ""), std::move(calibration),
+                             part.pure_shear));
     }
   }
   return all;

@@ -23,6 +23,7 @@ constexpr double kScaledAt = 0.15;     // ln(nu/nu_c) at which Eq. (15) is compa
 
 struct Measured {
   double value = kNaN, standard_error = kNaN;
+  std::size_t packings = 0;
 };
 
 Measured mean_of(const std::vector<double>& values) {
@@ -31,7 +32,7 @@ Measured mean_of(const std::vector<double>& values) {
   double sum = 0, squares = 0;
   for (const double v : values) sum += v / n;
   for (const double v : values) squares += (v - sum) * (v - sum);
-  return {sum, values.size() < 2 ? kNaN : std::sqrt(squares / (n - 1) / n)};
+  return {sum, values.size() < 2 ? kNaN : std::sqrt(squares / (n - 1) / n), values.size()};
 }
 
 /// Tests of shear at constant volume of one mode and branch at one density, by seed.
@@ -80,11 +81,11 @@ std::vector<double> differences(const BySeed& a, const Value& of_a, const BySeed
 class Claims {
  public:
   /// A sign, or with `printed` a value.
-  void add(const std::string& where, const std::string& statement, double nu, Measured ours, std::size_t packings,
+  void add(const std::string& where, const std::string& statement, double nu, const Measured& ours,
            Printed printed = {}) {
     if (!std::isfinite(ours.value)) return;
     all.push_back({where, statement, nu, ours.value, ours.standard_error, printed.value, ""});
-    judge(all.back(), printed, packings);
+    judge(all.back(), printed, ours.packings);
   }
 
   /// Two values that are said to be the same, at every density that both have; what matters is that part of the value.
@@ -136,10 +137,9 @@ void add_kinematics(const std::vector<TestRecord>& tests, Claims& claims) {
       lode.push_back(last->lode_strain);
     }
     const std::string mode = to_string(row.mode);
-    claims.add("Table 1", mode + ": deviatoric strain over strain of z", kNaN, mean_of(rate), rate.size(),
-               {row.rate, 0});
-    claims.add("Table 1", mode + ": shape factor of strain", kNaN, mean_of(shape), shape.size(), {row.shape, 0});
-    claims.add("Table 1", mode + ": Lode angle of strain [deg]", kNaN, mean_of(lode), lode.size(), {row.lode, 0});
+    claims.add("Table 1", mode + ": deviatoric strain over strain of z", kNaN, mean_of(rate), {row.rate, 0});
+    claims.add("Table 1", mode + ": shape factor of strain", kNaN, mean_of(shape), {row.shape, 0});
+    claims.add("Table 1", mode + ": Lode angle of strain [deg]", kNaN, mean_of(lode), {row.lode, 0});
   }
 }
 
@@ -150,8 +150,7 @@ void add_uniaxial_end(const std::vector<TestRecord>& tests, Claims& claims) {
     const auto last = std::find_if(test.rows.rbegin(), test.rows.rend(), [](const auto& r) { return r.segment == 0; });
     if (last != test.rows.rend() && std::abs(last->nu - 0.82) < 1e-3) coordination.push_back(last->C_star);
   }
-  claims.add("Sec. 5.1", "UNI: C* at the largest density", 0.82, mean_of(coordination), coordination.size(),
-             {9.5, 0.05, 0.1});
+  claims.add("Sec. 5.1", "UNI: C* at the largest density", 0.82, mean_of(coordination), {9.5, 0.05, 0.1});
 }
 
 void add_branches(const std::vector<TestRecord>& tests, double steady_from, Claims& claims) {
@@ -163,7 +162,7 @@ void add_branches(const std::vector<TestRecord>& tests, double steady_from, Clai
     const auto d =
         differences(on_loading, at_start(&Observation::C_star), other->second, at_start(&Observation::C_star));
     claims.add("Fig. 4", "C* before shear: loading branch above unloading branch", static_cast<double>(density) / 1e6,
-               mean_of(d), d.size());
+               mean_of(d));
   }
   claims.add_equal("Fig. 5", "steady C* in D2: the same from both branches (difference)", loading, unloading,
                    when_steady(&Observation::C_star, steady_from), "C_star");
@@ -175,7 +174,7 @@ void add_branches(const std::vector<TestRecord>& tests, double steady_from, Clai
     std::vector<double> d =
         differences(lowest, when_steady(&Observation::P_star, steady_from), lowest, at_start(&Observation::P_star));
     for (double& x : d) x *= sign;
-    claims.add("Fig. 8", statement, static_cast<double>(density) / 1e6, mean_of(d), d.size());
+    claims.add("Fig. 8", statement, static_cast<double>(density) / 1e6, mean_of(d));
   };
   drift(unloading, 1, "P* in D2 from the unloading branch: rises at the lowest density");
   drift(loading, -1, "P* in D2 from the loading branch: falls at the lowest density");
@@ -191,36 +190,36 @@ void add_collapse(const std::vector<TestRecord>& tests, double steady_from, Clai
 }
 
 /// Value of a curve of one mode with its error.
-Measured value_of(const CalibratedLaw* law, const DensityCurve& curve, double nu) {
-  if (law == nullptr || !has_values(*law, curve)) return {};
-  return {curve.of(law->parameters, nu), standard_error(*law, curve, nu)};
+Measured value_of(const Calibration* fit, const DensityCurve& curve, double nu) {
+  if (fit == nullptr || !has_values(fit->law, curve)) return {};
+  return {curve.of(fit->law.parameters, nu), standard_error(fit->law, curve, nu),
+          static_cast<std::size_t>(fit->size.packings)};
 }
 
-/// Difference of two fits; they are of the same packings, whose common scatter this counts twice.
+/// Difference of two fits; packings that they have in common scatter alike, which this counts twice.
 Measured operator-(const Measured& a, const Measured& b) {
-  return {a.value - b.value, std::hypot(a.standard_error, b.standard_error)};
+  return {a.value - b.value, std::hypot(a.standard_error, b.standard_error), std::min(a.packings, b.packings)};
 }
 
-void add_orders(const CalibratedLaw& iso, const std::vector<Description>& descriptions, std::size_t packings,
-                Claims& claims) {
-  const auto mode = [&](const char* name) -> const CalibratedLaw* {
+void add_orders(const Calibration& iso, const std::vector<Description>& descriptions, Claims& claims) {
+  const auto mode = [&](const char* name) -> const Calibration* {
     const auto d =
         std::find_if(descriptions.begin(), descriptions.end(), [&](const auto& x) { return x.name == name; });
-    return d == descriptions.end() ? nullptr : &d->calibration.law;
+    return d == descriptions.end() ? nullptr : &d->calibration;
   };
-  const CalibratedLaw *uni = mode("UNI"), *d3 = mode("D3");
+  const Calibration *uni = mode("UNI"), *d3 = mode("D3");
   using P = const LawParameters<double>&;
   const auto jamming = [&](const std::string& what, const DensityCurve& unloading, const DensityCurve& steady_state) {
     const Measured a = value_of(&iso, unloading, 0), b = value_of(uni, unloading, 0),
                    c = value_of(&iso, steady_state, 0), d = value_of(d3, steady_state, 0);
-    claims.add("Table 2", "nu_c of " + what + ": ISO above UNI", kNaN, a - b, packings);
-    claims.add("Table 2", "nu_c of " + what + ": UNI above D2", kNaN, b - c, packings);
-    claims.add("Table 2", "nu_c of " + what + ": ISO above D2", kNaN, a - c, packings);
+    claims.add("Table 2", "nu_c of " + what + ": ISO above UNI", kNaN, a - b);
+    claims.add("Table 2", "nu_c of " + what + ": UNI above D2", kNaN, b - c);
+    claims.add("Table 2", "nu_c of " + what + ": ISO above D2", kNaN, a - c);
     const Measured difference = d - c;
     if (!std::isfinite(difference.value)) return;
     claims.all.push_back({"Table 2", "nu_c of " + what + ": D3 as D2 (difference)", kNaN, difference.value,
                           difference.standard_error, 0, ""});
-    judge_equal(claims.all.back(), kSameJamming, packings);
+    judge_equal(claims.all.back(), kSameJamming, difference.packings);
   };
   jamming("C*", {"", "", {"coordination"}, [](P p, double) { return p.isotropic.coordination.nu_c; }},
           {"", "", {"steady_coordination"}, [](P p, double) { return p.steady.coordination.nu_c; }});
@@ -233,9 +232,8 @@ void add_orders(const CalibratedLaw& iso, const std::vector<Description>& descri
   };
   const Measured rattlers = value_of(&iso, named("rattler_fraction"), 0.82);
   claims.add("Fig. 7", "rattlers: steady D2 above ISO", 0.82,
-             value_of(&iso, named("steady_rattler_fraction"), 0.82) - rattlers, packings);
-  claims.add("Fig. 7", "rattlers: UNI above ISO", 0.82, value_of(uni, named("rattler_fraction"), 0.82) - rattlers,
-             packings);
+             value_of(&iso, named("steady_rattler_fraction"), 0.82) - rattlers);
+  claims.add("Fig. 7", "rattlers: UNI above ISO", 0.82, value_of(uni, named("rattler_fraction"), 0.82) - rattlers);
 
   const DensityCurve scaled{"", "", {"pressure"}, [](P p, double x) {
                               const auto& law = p.isotropic.pressure;
@@ -247,12 +245,13 @@ void add_orders(const CalibratedLaw& iso, const std::vector<Description>& descri
                                    }};
   const std::string where = fmt::format("scaled pressure at ln(nu/nu_c) = {}: ", kScaledAt);
   const Measured u = value_of(uni, scaled, kScaledAt);
-  claims.add("Fig. 10", where + "ISO above UNI", kNaN, value_of(&iso, scaled, kScaledAt) - u, packings);
-  claims.add("Fig. 10", where + "UNI above D2", kNaN, u - value_of(&iso, scaled_steady, kScaledAt), packings);
+  claims.add("Fig. 10", where + "ISO above UNI", kNaN, value_of(&iso, scaled, kScaledAt) - u);
+  claims.add("Fig. 10", where + "UNI above D2", kNaN, u - value_of(&iso, scaled_steady, kScaledAt));
 }
 
 /// Eq. (19): one A* = a0 F_dev in both rows; ours are two, a B* F_dev. The error of B* is small beside that of a.
-void add_anisotropy(const CalibratedLaw& law, std::size_t packings, Claims& claims) {
+void add_anisotropy(const Calibration& fit, Claims& claims) {
+  const CalibratedLaw& law = fit.law;
   constexpr double nu = 0.74;
   if (!has_values(law, "pressure") || nu < law.range.nu_min || nu > law.range.nu_max) return;
   const double B = law.parameters.isotropic.B_star(nu);
@@ -261,7 +260,9 @@ void add_anisotropy(const CalibratedLaw& law, std::size_t packings, Claims& clai
         {"anisotropy.a2", "A2*/F_dev, the row of deviatoric stress; the paper has one A"}}) {
     const Estimate& a = law.estimates[parameter_index(name)];
     if (a.status == Status::not_identified) continue;
-    claims.add("Eq. 19", statement, nu, {a.value * B, a.standard_error * B}, packings, {0.137, 0.0005, 0.0137});
+    claims.add("Eq. 19", statement, nu,
+               {a.value * B, a.standard_error * B, static_cast<std::size_t>(fit.size.packings)},
+               {0.137, 0.0005, 0.0137});
   }
 }
 
@@ -296,17 +297,15 @@ void judge_equal(Claim& claim, double matters, std::size_t packings) {
     claim.verdict = verdict_within(claim.ours, range, matters);
 }
 
-std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const CalibratedLaw& law,
+std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const Calibration& calibration,
                              const std::vector<Description>& descriptions, double steady_from) {
-  std::set<std::uint64_t> seeds;
-  for (const TestRecord& test : tests) seeds.insert(test.packing.seed);
   Claims claims;
   add_kinematics(tests, claims);
   add_uniaxial_end(tests, claims);
-  add_orders(law, descriptions, seeds.size(), claims);
+  add_orders(calibration, descriptions, claims);
   add_branches(tests, steady_from, claims);
   add_collapse(tests, steady_from, claims);
-  add_anisotropy(law, seeds.size(), claims);
+  add_anisotropy(calibration, claims);
   return claims.all;
 }
 

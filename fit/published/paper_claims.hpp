@@ -42,7 +42,7 @@ void judge(Claim& claim, Printed printed, std::size_t packings);
 void judge_equal(Claim& claim, double matters, std::size_t packings);
 
 /// All that `tests` (calibration and description) and the fits can speak of, in the order of the paper.
-std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const CalibratedLaw& law,
+std::vector<Claim> claims_of(const std::vector<TestRecord>& tests, const Calibration& calibration,
                              const std::vector<Description>& descriptions, double steady_from);
 
 }  // namespace grainlaw::fit

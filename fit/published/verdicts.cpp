@@ -19,15 +19,15 @@ bool of_shear(std::string_view group) {
   return group.starts_with("steady_") || std::find(shear.begin(), shear.end(), group) != shear.end();
 }
 
-/// A moderated error has more degrees of freedom than that of the packings alone.
-void judge(Verdict& v, bool known, std::size_t packings, double degrees_of_freedom) {
-  const double n = static_cast<double>(packings);
+void judge(Verdict& v, bool known, int packings, double degrees_of_freedom) {
+  const double n = packings;
   if (!known) v.ours = std::nan("");
   v.matters = difference_that_matters(v.quantity, v.nu, v.published);
   // on its bound a parameter has no error, and nothing is so and so many of none away
   const double scatter = v.standard_error > 0 ? v.standard_error * std::sqrt(n + 1) : std::nan("");
   v.distance = (v.ours - v.published) / scatter;
-  v.range = packings < 2 ? std::nan("") : student_95(std::fmax(n - 1, degrees_of_freedom)) * scatter;
+  v.range = packings < 2 ? std::nan("")
+                         : student_95(std::isfinite(degrees_of_freedom) ? degrees_of_freedom : n - 1) * scatter;
   if (!known)
     v.verdict = "not identified";
   else if (!std::isfinite(v.distance) || packings < 2)
@@ -39,7 +39,7 @@ void judge(Verdict& v, bool known, std::size_t packings, double degrees_of_freed
 }
 
 /// `mode` of the laws on an unloading branch and `shear` of those in shear; empty: left out.
-void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::string& shear, std::size_t packings,
+void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::string& shear, int packings,
                   std::vector<Verdict>& all) {
   const auto mode_of = [&](std::string_view group) { return of_shear(group) ? shear : mode; };
   const LawParameters<double> published = published_parameters(mode.empty() ? shear : mode);
@@ -99,13 +99,12 @@ double difference_that_matters(const std::string& quantity, std::optional<double
   return 0.1 * std::abs(published);
 }
 
-std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions,
-                                 std::size_t packings) {
+std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions, int packings) {
   std::vector<Verdict> all;
   add_verdicts(law, "ISO", "D2", packings, all);
   for (const Description& d : descriptions) {
     const bool unloading = d.name == "UNI";
-    add_verdicts(d.calibration.law, unloading ? d.name : "", unloading ? "" : d.name, packings, all);
+    add_verdicts(d.calibration.law, unloading ? d.name : "", unloading ? "" : d.name, d.calibration.size.packings, all);
   }
   return all;
 }

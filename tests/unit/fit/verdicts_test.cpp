@@ -124,10 +124,23 @@ TEST(Verdicts, SpheresOfAnotherMaterialAreNotJudgedByThePapersNumbers) {
   }
 }
 
+TEST(Verdicts, RangesAreOfThePackingsAndDegreesOfFreedomOfEachFit) {
+  std::vector<Description> modes{{"UNI", published("UNI", {"coordination"})}};
+  modes[0].calibration.size.packings = 2;
+  Calibration c = published("", {"coordination"});
+  const std::size_t i = parameter_index("coordination.C1");
+  c.law.estimates[i].degrees_of_freedom = 1.5;  // two of its five packings nearly alone say it
+  const std::vector<Verdict> all = verdicts_of(c.law, modes, 5);
+  const Verdict iso = find(all, "ISO", "coordination.C1"), uni = find(all, "UNI", "coordination.C1");
+  EXPECT_NEAR(iso.range, student_95(1.5) * std::sqrt(6.) * iso.standard_error, 1e-12);
+  EXPECT_NEAR(uni.range, student_95(1) * std::sqrt(3.) * uni.standard_error, 1e-12);
+}
+
 TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
-  const std::vector<Description> modes{
+  std::vector<Description> modes{
       {"UNI", published("UNI", {"coordination", "rattlers", "pressure"}, 1e-5)},
       {"D3", published("D3", {"steady_coordination", "steady_rattlers", "steady_pressure", "fabric_max"}, 1e-5)}};
+  for (Description& d : modes) d.calibration.size.packings = 5;
   const std::vector<Verdict> all =
       verdicts_of(published("", {"coordination", "steady_coordination", "stress_rate"}, 1e-5).law, modes, 5);
   EXPECT_EQ(find(all, "UNI", "coordination.C1").published, 8.37);
