@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "fit/statistics/covariance.hpp"
 
@@ -131,13 +132,18 @@ Eigen::MatrixXd influence_of_reach(const std::vector<ResidualBlock>& blocks, con
                                    const Eigen::MatrixXd& influence) {
   const Eigen::Index rows = solution.weight.size(), packings = influence.cols();
   Eigen::MatrixXd moved = Eigen::MatrixXd::Zero(rows, packings);  // reach, by the grouped jackknife
-  if (packings > 1) {
-    for (Eigen::Index c = 0; c < packings; ++c) {
-      const Eigen::VectorXd without = reach_of(blocks, solution.misfit, static_cast<int>(c));
+  std::set<int> present;
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    if (solution.weight(i) > 0) present.insert(solution.cluster[static_cast<std::size_t>(i)]);
+  }
+  if (present.size() > 1) {
+    for (const int c : present) {
+      const Eigen::VectorXd without = reach_of(blocks, solution.misfit, c);
       moved.col(c) = without.array().isFinite().select(without - solution.reach, 0);
     }
-    const double n = static_cast<double>(packings);
-    moved = (-std::sqrt((n - 1) / n) * (moved.colwise() - moved.rowwise().mean())).eval();
+    const double n = static_cast<double>(present.size());
+    const Eigen::VectorXd mean = moved.rowwise().sum() / n;
+    for (const int c : present) moved.col(c) = -std::sqrt((n - 1) / n) * (moved.col(c) - mean);
   }
   Eigen::VectorXd pull(rows);  // d pull/d reach
   for (Eigen::Index i = 0; i < rows; ++i) {
