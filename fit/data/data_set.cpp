@@ -106,7 +106,8 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const TestRecord& test = tests[i];
     check_test(test, role);
-    check_material(test, tests.front());
+    for (std::size_t j = 0; j < i; ++j)
+      check_material(test, tests[j]);  // of those that do not tell, each agrees with all
     if (!names.insert(test.name).second) refuse(test, "this name is given twice; rename one of the tests");
     for (std::size_t j = 0; j < i; ++j) {
       if (same_series(test, tests[j])) {

@@ -158,6 +158,10 @@ TEST(DataSet, RefusesASecondMaterial) {
   expect_refusal(changed, {"test " + changed[2].name, "size_width", tests[0].name});
   changed[2].packing.size_width = 0;
   EXPECT_EQ(refusal_of_tests(changed), "accepted") << "unknown";
+  changed = tests;
+  changed[0].packing.size_width = 0;
+  changed[2].packing.size_width = 2 * tests[1].packing.size_width;
+  expect_refusal(changed, {"test " + changed[2].name, "size_width", changed[1].name});
 }
 
 TEST(DataSet, RefusesEmptyAndMisshapenTests) {
