@@ -59,6 +59,8 @@ Curve fit_curve(const SaturationProblem& problem, double start, double scale, co
     withdraw(curve.limit, note);
     withdraw(curve.rate, note);
   }
+  if (curve.rate.status == Status::at_bound && curve.rate.value == kLargestRate)
+    withdraw(curve.rate, fmt::format("{} has its limit from the first row on; write rows closer together", quantity));
   if (!fit.stage.converged) {
     withdraw(curve.limit, "no convergence: " + fit.stage.termination);
     withdraw(curve.rate, "no convergence: " + fit.stage.termination);

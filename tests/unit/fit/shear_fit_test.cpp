@@ -56,6 +56,16 @@ TEST(ShearFit, RecoversEqs17And18WithTheirMeasuredStart) {
   EXPECT_EQ(stage.tests.size(), 2u);
 }
 
+TEST(ShearFit, ARateFasterThanItsRowsIsNone) {
+  Stage stage;
+  const ShearFit fit = fit_shear(exact_shear(0.70, 0.1744, 1e6, 0.1335, 43.8, 0.3), 0.6649, {}, {}, stage);
+  EXPECT_EQ(fit.beta_s.status, Status::not_identified);
+  EXPECT_NE(fit.beta_s.note.find("closer together"), std::string::npos) << fit.beta_s.note;
+  EXPECT_NEAR(fit.s_max.value, 0.1744, 1e-3);
+  EXPECT_EQ(fit.s_max.status, Status::fitted);
+  EXPECT_EQ(fit.beta_F.status, Status::fitted);
+}
+
 TEST(ShearFit, TakesComponentsAlongTheShear) {
   TestRecord test = exact_shear(0.70, 0.1744, 54.4, 0.1335, 43.8, 0.3, -0.01);
   for (Observation& row : test.rows) {
