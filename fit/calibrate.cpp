@@ -96,8 +96,8 @@ ValidRange range_of(const std::vector<Trajectory>& trajectories, const DataSet& 
     const double e = t.rows.back().e;
     range.nu_min = std::min({range.nu_min, t.nu_start, t.nu(e)});
     range.nu_max = std::max({range.nu_max, t.nu_start, t.nu(e)});
-    range.eps_dev_max = std::max(range.eps_dev_max, t.direction.de * e);
-    range.eps_vol_max = std::max(range.eps_vol_max, std::abs(t.direction.dx) * e);
+    range.eps_dev_max = std::max({range.eps_dev_max, t.eps_dev(0), t.eps_dev(e)});
+    range.eps_vol_max = std::max({range.eps_vol_max, std::abs(t.eps_vol(0)), std::abs(t.eps_vol(e))});
   }
   return range;
 }
@@ -117,6 +117,11 @@ void moderate_errors(const CalibrationOptions& options, Calibration& calibration
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     if (says_nothing(law, i)) law.estimates[i].note = fmt::format("not determined by {} packings", size.packings);
   }
+  if (std::isnan(size.spheres))
+    calibration.warnings.push_back(
+        fmt::format("packings do not all say their `particles`: errors are those of {} packings alone, not moderated "
+                    "by a prior, and what their size biases is not known",
+                    size.packings));
   if (size.spheres < kLeastParticles * static_cast<double>(size.packings))
     calibration.warnings.push_back(
         fmt::format("packings of {:.0f} spheres: what a size below {:.0f} biases is in no interval (jamming "
@@ -149,9 +154,12 @@ RunControl of_whole(const RunControl& control) {
 
 PackingCount size_of(const std::vector<TestRecord>& tests) {
   std::map<std::uint64_t, double> spheres;
-  for (const TestRecord& test : tests) spheres[test.packing.seed] = static_cast<double>(test.packing.particles);
+  for (const TestRecord& test : tests) {
+    double& count = spheres[test.packing.seed];
+    count = std::max(count, static_cast<double>(test.packing.particles));
+  }
   PackingCount size{static_cast<int>(spheres.size()), 0};
-  for (const auto& [seed, count] : spheres) size.spheres += count;
+  for (const auto& [seed, count] : spheres) size.spheres += count > 0 ? count : kUndefined;
   return size;
 }
 

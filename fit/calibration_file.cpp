@@ -126,7 +126,7 @@ void write_calibration(const std::filesystem::path& file, const Calibration& cal
   document["moderation"] = {{"parameters", moderation.parameters},
                             {"ratio", options.prior ? number_or_null(moderation.ratio) : OrderedJson()},
                             {"packings", calibration.size.packings},
-                            {"spheres", calibration.size.spheres}};
+                            {"spheres", number_or_null(calibration.size.spheres)}};
   document["dataset_digest"] = calibration.law.dataset_digest;
   document["stages"] = stages_to_json(calibration);
   document["shear"] = fields_to_json(calibration.shear);

@@ -25,8 +25,12 @@ void run(const StageDefinition& stage, Calibration& calibration, const Calibrati
          const RunControl& control) {
   const StageFit fit = run_stage(stage, calibration.law.parameters, options, control, calibration.errors);
   calibration.stages.push_back(fit.stage);
-  add_errors(fit, calibration.errors);
-  for (const auto& [name, estimate] : fit.stage.estimates) calibration.law.estimates[parameter_index(name)] = estimate;
+  const bool without_solution = stage.blocks && !fit.solution.defined;  // what stages before have found stands
+  if (!without_solution) add_errors(fit, calibration.errors);
+  for (const auto& [name, estimate] : fit.stage.estimates) {
+    Estimate& of_law = calibration.law.estimates[parameter_index(name)];
+    if (!without_solution || of_law.status == Status::not_identified) of_law = estimate;
+  }
 }
 
 namespace {

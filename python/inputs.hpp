@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "model/files/json_document.hpp"
 #include "model/vocabulary/enum_names.hpp"

@@ -39,7 +39,7 @@ std::vector<double> saturating_densities(const StageFit& fit, const std::vector<
     const auto rows = static_cast<Eigen::Index>(t.rows.size()), axes = static_cast<Eigen::Index>(t.axes.size());
     const Eigen::Index at = first + rows * (pair.of_stress ? 1 : 1 + axes);
     first += rows * (1 + 2 * axes);
-    if (rows == 0 || t.direction.de == 0 || std::abs(t.direction.dx) > 1e-12) continue;
+    if (rows == 0 || !t.constant_volume()) continue;
     const auto along = [&](const LawState<double>& y) {
       return pair.of_stress ? y.sigma.dot(t.axes[0]) / y.P : y.F.dot(t.axes[0]);
     };

@@ -166,7 +166,7 @@ TiedCoupling tied_a1(const std::vector<Trajectory>& trajectories, const LawParam
   if (a2.status == Status::not_identified) return tied;
   std::map<std::string, RatioOfTest> ratios;
   for (const Trajectory& t : trajectories) {
-    if (t.direction.de == 0 || std::abs(t.direction.dx) > 1e-12) continue;
+    if (!t.constant_volume()) continue;
     const double B = law.isotropic.B_star(t.nu_start);
     for (const TrajectoryRow& row : t.rows) {
       const double F = row.data.F.dot(t.direction.N);

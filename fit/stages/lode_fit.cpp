@@ -10,14 +10,11 @@ namespace grainlaw::fit {
 bool is_like_D2(double lode) { return std::abs(lode) < 0.5; }
 
 ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories) {
-  const auto constant_volume = [](const Trajectory& t) {
-    return std::abs(t.direction.dx) <= 1e-12 && t.direction.de > 0;
-  };
   const bool known = std::ranges::any_of(
-      trajectories, [&](const Trajectory& t) { return constant_volume(t) && is_like_D2(t.direction.lode); });
+      trajectories, [&](const Trajectory& t) { return t.constant_volume() && is_like_D2(t.direction.lode); });
   ByLodeAngle sorted;
   for (const Trajectory& t : trajectories) {
-    const bool other = known && constant_volume(t) && !is_like_D2(t.direction.lode);
+    const bool other = known && t.constant_volume() && !is_like_D2(t.direction.lode);
     (other ? sorted.others : sorted.reference).push_back(t);
   }
   return sorted;

@@ -20,8 +20,7 @@ constexpr std::array kFree{"memory.G",   "memory.alpha", "memory.k",   "memory.l
 constexpr std::size_t kVolumetric = 2;
 constexpr double kVagueParameter = 0.5;  // relative error beyond which a parameter is no number, chance aside
 constexpr double kWindowRounding = 1e-9;
-
-bool constant_volume(const Trajectory& t) { return std::abs(t.direction.dx) <= 1e-12; }
+constexpr double kNoLode = 1e-6;  // of D2, by rounding
 
 /// Rows of a channel that count.
 struct Counted {
@@ -55,7 +54,7 @@ void add_channel(const Trajectory& t, const std::string& quantity, Counted count
 ResidualBlock memory_block(const Trajectory& t, const LawParameters<double>& fixed,
                            const std::vector<std::size_t>& index, const CalibrationOptions& options) {
   constexpr Counted all{1e300}, none{-1};
-  const bool shear = constant_volume(t);
+  const bool shear = t.constant_volume();
   ResidualBlock block;
   block.test = t.test;
   block.cluster = t.cluster;
@@ -113,7 +112,8 @@ bool lag_may_be_none(const StageFit& fit) {
   const Eigen::Index at = fit.find("memory.kappa");
   if (at < 0) return false;
   const Estimate& kappa = fit.stage.estimates[static_cast<std::size_t>(at)].estimate;
-  return !(kappa.value + kappa.half_width() < parameter_table()[parameter_index("memory.kappa")].upper);
+  const double half = std::isnan(kappa.half_width()) ? 0 : kappa.half_width();  // none on a bound
+  return kappa.value + half >= parameter_table()[parameter_index("memory.kappa")].upper;
 }
 
 /// Lower end of the 95 % interval of a standard error, over it: with two packings an error is chance by a factor of two.
@@ -171,6 +171,8 @@ StageDefinition memory_stage(const std::vector<Trajectory>& trajectories, const 
   };
   stage.given_groups = {"coordination",    "rattlers",        "pressure",         "steady_coordination",
                         "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"};
+  if (std::ranges::any_of(trajectories, [](const Trajectory& t) { return std::abs(t.direction.lode) > kNoLode; }))
+    stage.given_groups.push_back("lode");
   stage.judge = [](StageFit& fit, const LawParameters<double>&) { withdraw_vague(fit); };
   stage.coupled = stage.profiled = true;
   return stage;

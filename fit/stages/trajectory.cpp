@@ -44,12 +44,15 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
   t.branch = test.path.branch;
   t.start = measured_state(test, start);
   t.nu_start = start.nu;
+  const Eigen::Matrix3d strain_start = test.rows.front().strain.tensor - start.strain.tensor;  // compression positive
+  t.dev_start = deviator<double>(strain_start);
+  t.vol_start = strain_start.trace();
   t.direction = law_direction(StrainRate{D});
   t.axes = axes_of(test);
   t.starts_on_law = t.axes.empty();
   if (t.starts_on_law && !t.start.F.allFinite()) t.start.F.setZero();  // isotropic compression does not read it
-  const double nu_min = t.starts_on_law ? std::max(nu_c, options.iso_nu_min) : nu_c;
-  const bool constant_volume = std::abs(t.direction.dx) <= 1e-12 * D.norm();
+  // towards jamming as isotropic unloading: from a measured start the law's pressure may end above the packing's nu_c
+  const double nu_min = t.starts_on_law || t.direction.dx < 0 ? std::max(nu_c, options.iso_nu_min) : nu_c;
 
   std::vector<double> e, strain;
   std::vector<std::size_t> number;
@@ -65,7 +68,7 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
     strain.push_back(at * std::max(t.direction.de, std::abs(t.direction.dx)));
     number.push_back(i);
   }
-  const RowWeights rows = constant_volume ? shear_window(strain, options) : whole_window(strain);
+  const RowWeights rows = t.constant_volume() ? shear_window(strain, options) : whole_window(strain);
   for (std::size_t k = 0; k < rows.row.size(); ++k) {
     const std::size_t i = rows.row[k];
     t.rows.push_back({e[i], measured_state(test, test.rows[number[i]]), rows.weight[k]});

@@ -33,14 +33,21 @@ struct Trajectory {
   Branch branch = Branch::unloading;  ///< on which the test starts
   bool starts_on_law =
       false;  ///< P by Eq. (14) at nu_start, else all of `start`, whose fabric is NaN if the test tells none
-  LawState<double> start;              ///< measured; s_r the measured ratio at the reversal before, if any
-  double nu_start = 0;                 ///< [-]
+  LawState<double> start;  ///< measured; s_r the measured ratio at the reversal before, if any
+  double nu_start = 0;     ///< [-]
+  /// Strain since the start of the test, compression positive [-].
+  Deviator<double> dev_start = Deviator<double>::Zero();
+  double vol_start = 0;
   LawDirection direction;              ///< per unit of e
   std::vector<Deviator<double>> axes;  ///< orthonormal; deviators are compared along these, the first one is N of s_par
   std::vector<TrajectoryRow> rows;     ///< that enter, e ascending
   int excluded = 0;                    ///< rows of the segment that do not
 
   double nu(double e) const { return nu_start * std::exp(direction.dx * e); }  ///< volume fraction at e [-]
+  double eps_dev(double e) const { return (dev_start + direction.N * (direction.de * e)).norm(); }  ///< likewise
+  double eps_vol(double e) const { return vol_start + direction.dx * e; }                           ///< likewise
+
+  bool constant_volume() const { return direction.de > 0 && std::abs(direction.dx) <= 1e-12 * direction.de; }
 };
 
 /// Trajectories of all tests of `data`: ISO unloading with nu >= iso_nu_min and every segment of a test with shear. Rows

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "fit/staged_laws.hpp"
 #include "model/vocabulary/error.hpp"
 #include "tests/support/synthetic_dataset.hpp"
 
@@ -158,6 +160,69 @@ TEST(Calibrate, OneSeedOneDensityRunsAndClaimsNothingItCannotKnow) {
                            "steady_pressure.nu_c", "steady_coordination.C1"}) {
     EXPECT_EQ(estimate(c, name).status, Status::not_identified) << name;
   }
+}
+
+TEST(Calibrate, AStageWithoutASolutionLeavesWhatIsKnown) {
+  Calibration c = nothing_known();
+  const std::size_t D = parameter_index("overlap.D"), g3 = parameter_index("fabric.g3");
+  c.law.estimates[D] = {0.4, 0.1, Status::fitted, "", 4};
+  widen(c.errors.influence, 2);
+  c.errors.influence.row(static_cast<Eigen::Index>(D)).setConstant(0.05);
+  StageDefinition stage;
+  stage.name = "undefined";
+  stage.free = {"overlap.D", "fabric.g3"};
+  stage.blocks = [](const LawParameters<double>&) {
+    ResidualBlock block;
+    block.weight = Eigen::VectorXd::Ones(1);
+    block.channels = {{"value", 0, 1, 0, 1}};
+    block.evaluate = [](const double*, double*, double*) { return false; };
+    return std::vector<ResidualBlock>{block};
+  };
+  run(stage, c, {}, {});
+  EXPECT_FALSE(all_converged(c));
+  EXPECT_EQ(c.law.estimates[D].status, Status::fitted);
+  EXPECT_EQ(c.law.estimates[D].value, 0.4);
+  EXPECT_EQ(c.errors.influence(static_cast<Eigen::Index>(D), 1), 0.05);
+  EXPECT_EQ(c.law.estimates[g3].status, Status::not_identified);
+  EXPECT_NE(c.law.estimates[g3].note.find("no finite solution"), std::string::npos);
+}
+
+// By strains since the start of a test, as predictions are judged: not by how far single segments went.
+TEST(Calibrate, RangesAreOfStrainSinceTheStart) {
+  testing::SyntheticOptions options = noisy();
+  options.rows = 20;
+  testing::SyntheticDataset set(testing::synthetic_truth(), options);
+  const auto shear = [](double extent, bool back) {
+    return testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, extent, back);
+  };
+  const auto compress = testing::synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.74);
+  for (const bool back : {true, false}) {
+    const std::vector<TestRecord> tests{set.isotropic_unloading(1),
+                                        set.test("d2", 1, 0.72, {shear(0.1, false), shear(0.15, back), compress})};
+    CalibrationOptions options_of_fit;
+    const std::vector<TestRecord> with{tests[0], tests[1], set.test("short", 1, 0.73, {shear(0.02, false)})};
+    const ValidRange range = calibrate(with, options_of_fit, {}).law.range;
+    EXPECT_NEAR(range.eps_dev_max, back ? 0.1 : 0.25, 1e-9);
+    EXPECT_NEAR(range.shear_path_max, 0.25, 1e-9);
+  }
+}
+
+TEST(Calibrate, SpheresAreKnownOnlyWhereAllPackingsTellThem) {
+  std::vector<TestRecord> tests(3);
+  for (std::size_t i = 0; i < 3; ++i) tests[i].packing.seed = i / 2;  // the first two of one packing
+  tests[0].packing.particles = 1000;
+  EXPECT_TRUE(std::isnan(size_of(tests).spheres));
+  tests[2].packing.particles = 500;
+  EXPECT_EQ(size_of(tests).spheres, 1500) << "one of a packing's tests is enough";
+  testing::SyntheticOptions options = noisy();
+  options.densities = {0.72};
+  options.seeds = {5};
+  options.rows = 20;
+  tests = testing::synthetic_dataset(testing::synthetic_truth(), options);
+  for (TestRecord& test : tests) test.packing.particles = 0;
+  const std::vector<std::string> warnings = calibrate(tests, {}, {}).warnings;
+  EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& w) { return w.find("particles") != w.npos; }));
+  EXPECT_FALSE(std::ranges::any_of(warnings, [](const std::string& w) { return w.find("spheres:") != w.npos; }));
 }
 
 TEST(Calibrate, RefusesBeforeAnythingRuns) {

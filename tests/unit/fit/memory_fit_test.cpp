@@ -93,6 +93,23 @@ TEST(MemoryFit, TheRateOfALagThatMayBeNoneNeedNotBeKnown) {
   }
 }
 
+// At kappa = 0 all fabric lags, and at which rate is all there is to know.
+TEST(MemoryFit, OfALagThatIsCertainTheRateMustBeKnown) {
+  SyntheticOptions options = of_memory();
+  options.rows = 8;
+  options.seeds = {1};
+  const StageDefinition stage =
+      memory_stage(memory_trajectories(testing::synthetic_dataset(memory_truth(), options)), {});
+  for (const double kappa : {0.0, parameter_table()[parameter_index("memory.kappa")].upper}) {
+    StageFit fit;
+    fit.stage.estimates = {{"memory.lambda", {40, 60, Status::fitted, "", 4}},
+                           {"memory.kappa", {kappa, std::nan(""), Status::at_bound, ""}}};
+    fit.influence = Eigen::MatrixXd::Zero(2, 2);
+    stage.judge(fit, memory_truth());
+    EXPECT_EQ(fit.stage.estimates[0].estimate.status, kappa == 0 ? Status::not_identified : Status::fitted) << kappa;
+  }
+}
+
 // Weights 1/d_i of noisy data d_i favour the low ones: the level of a constant P comes out too low by twice the square of the
 // relative noise. One weight for all rows of a test has no such bias.
 TEST(MemoryFit, PressureIsRelativeToTheMeanOfTheTest) {

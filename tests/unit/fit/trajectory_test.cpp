@@ -97,6 +97,21 @@ TEST(Trajectory, OnePerSegmentEachFromItsCorner) {
   EXPECT_EQ(all[3].rows.size(), 40u);  // no window where the volume changes
 }
 
+// Rates of other programs are in 1/s: what is left of a trace by rounding is as large as they are.
+TEST(Trajectory, ConstantVolumeIsBesideTheShear) {
+  Trajectory t;
+  for (const double unit : {1.0, 1e-9, 1e9}) {
+    t.direction =
+        law_direction(StrainRate{unit * Eigen::Vector3d(12000.1, 345.7, -12345.8).asDiagonal().toDenseMatrix()});
+    EXPECT_TRUE(t.constant_volume()) << unit << " " << t.direction.dx;
+    t.direction =
+        law_direction(StrainRate{unit * Eigen::Vector3d(12000.1, 345.7, -12345.9).asDiagonal().toDenseMatrix()});
+    EXPECT_FALSE(t.constant_volume()) << unit;
+  }
+  t.direction = law_direction(direction_of(Mode::ISO));
+  EXPECT_FALSE(t.constant_volume());
+}
+
 TEST(Trajectory, SegmentsOfAnotherModeAddTheirOwnAxis) {
   testing::SyntheticOptions options;
   options.rows = 10;
@@ -125,6 +140,23 @@ TEST(Trajectory, RowsBelowJammingEndIt) {
   const DataSet data = check_and_sort(tests);
   EXPECT_TRUE(trajectories_of(data, 0.71, {})[1].rows.empty());
   EXPECT_EQ(trajectories_of(data, 0.71, {})[1].excluded, 50);
+}
+
+// Close to jamming a measured start that carries less than the law would use up its pressure above nu_c, and with it the stage.
+TEST(Trajectory, UnloadingAfterShearEndsWhereIsotropicUnloadingDoes) {
+  testing::SyntheticOptions options;
+  options.rows = 50;
+  testing::SyntheticDataset set(testing::synthetic_truth(), options);
+  std::vector<TestRecord> tests{set.isotropic_unloading(1)};
+  tests.push_back(set.test("d2", 1, 0.71, {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.3)}));
+  tests.push_back(set.test("d2-out", 1, 0.70,
+                           {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.1),
+                            testing::synthetic_segment(Mode::ISO, ExtentKind::target_nu, 0.67, true)}));
+  const std::vector<Trajectory> all = trajectories_of(check_and_sort(tests), 0.6649, {});
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_GT(all[3].rows.size(), 30u);
+  EXPECT_GT(all[3].excluded, 0);
+  EXPECT_GE(all[3].nu(all[3].rows.back().e), CalibrationOptions{}.iso_nu_min - 1e-12);
 }
 
 TEST(Trajectory, RowsOffThePathAreNamed) {
