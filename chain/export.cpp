@@ -19,6 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kAllSeries = "series.csv";  // of csv
+
 /// A state file of the source, with the motion of its cell where that is known.
 struct StateSource {
   fs::path file;
@@ -124,7 +126,7 @@ class Export {
     for (const auto& [name, text] : appended_) write(name, text);
     if (!spheres_.empty()) write("spheres.pvd", dem::pvd(spheres_));
     if (!contacts_.empty()) write("contacts.pvd", dem::pvd(contacts_));
-    if (format_ == ExportFormat::csv && done_.series > 0) write("series.csv", table_);
+    if (format_ == ExportFormat::csv && done_.series > 0) write(kAllSeries, table_);
     return std::move(done_);
   }
 
@@ -217,6 +219,11 @@ Exported export_files(const fs::path& source, ExportFormat format, const fs::pat
   const std::vector<fs::path> series = tables ? series_of(source) : std::vector<fs::path>{};
   const std::vector<StateSource> states = series.empty() ? states_of(source) : std::vector<StateSource>{};
   for (const StateSource& state : states) dem::read_state(state.file);  // refused before a folder is made
+  std::error_code none_there;
+  for (const fs::path& file : series) {
+    if (format == ExportFormat::csv && fs::equivalent(file, output / kAllSeries, none_there))
+      throw InvalidInput(fmt::format("{}: would be overwritten; give another folder with -o", file.string()));
+  }
   Export exported(format, output);
   const auto look = [&] {
     if (control.stop.stop_requested()) throw Interrupted("interrupted; files that are written are whole");

@@ -15,6 +15,7 @@
 #include "app/report/tables.hpp"
 #include "app/report/warning_groups.hpp"
 #include "model/files/output.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::app {
 namespace report {
@@ -232,6 +233,10 @@ Page page_about(const std::filesystem::path& dir, const std::filesystem::path& c
 
 void write_report(const std::filesystem::path& dir, const std::filesystem::path& html,
                   const std::filesystem::path& compare) {
+  const std::filesystem::path target = std::filesystem::weakly_canonical(html);  // through links
+  if (std::filesystem::is_regular_file(target) && (target.extension() == ".json" || target.extension() == ".csv"))
+    throw InvalidInput(
+        fmt::format("{}: is there already and no page; give a name that ends with .html", html.string()));
   write_as_named(html, report::page_html(report::page_about(dir, compare)));
 }
 

@@ -33,6 +33,10 @@ for format in vtp xyz lammps-data lammps-dump vtkhdf npz csv; do
   "$grainlaw" export run/end.state --format $format -o end-$format --json | jq -e '.states == 1 and (.files | length > 0)' >/dev/null || fail "$format of a state"
 done
 grep -q '2 series as csv\|1 series as csv' text || fail "$(cat text)"
+before=$(sha256sum run/series.csv)
+code=0
+"$grainlaw" export run --format csv -o run 2>err >text || code=$?
+[[ $code == 2 && $(sha256sum run/series.csv) == "$before" ]] && grep -q 'run/series.csv: would be overwritten' err || fail "over its source: $(cat err)"
 for wrong in "nothing --format vtp" "run/series.csv --format vtp" "test.json --format xyz" "run --format pdf"; do
   code=0
   # shellcheck disable=SC2086

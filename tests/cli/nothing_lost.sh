@@ -25,6 +25,19 @@ cmp -s page.html through || fail "the FIFO got something else than the link's ta
 [[ $(code_of "$grainlaw" init spec -o -) == 0 && ! -e ./- ]] && cp out starter.json &&
   [[ $(code_of "$grainlaw" check starter.json) == 0 ]] || fail "init -o - $(cat out err)"
 
+# a page in place of a result, also through a link; options that nothing reads
+before=$(state_of)
+ln -s good/parameters.json linked
+for name in good/parameters.json good/dataset/dataset.json good/dataset/D2-0.68-s1.csv linked; do
+  [[ $(code_of "$grainlaw" report good -o "$name") == 2 ]] && grep -q 'ends with .html' err || fail "report over $name: $(cat err)"
+done
+[[ $(state_of) == "$before" ]] || fail "report replaced a result"
+echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.05}}]}' >d2.json
+for option in "--seeds 3" "--spec none.json" "--store none"; do
+  [[ $(code_of "$grainlaw" predict good/parameters.json d2.json -o p $option) == 2 ]] && grep -q 'give --dem too' err ||
+    fail "predict $option: $(cat err)"
+done
+
 # a data set that is refused, before the fit or by it, changes nothing
 before=$(state_of)
 cp -r "$shipped" bad
