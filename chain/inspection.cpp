@@ -170,7 +170,7 @@ void inspect_parameters(const fs::path& file, Inspection& seen) {
 
 void inspect_json(const fs::path& file, const Company& company, const fs::path& output, const Execution& execution,
                   Inspection& seen) {
-  const Json document = read_json(file, JsonSource::user);
+  const Json document = read_json(file, JsonSource::any);  // who reads it then refuses what is a user's alone
   const Kind* kind = kind_of(document);
   if (kind == nullptr)
     throw InvalidInput(
@@ -271,7 +271,7 @@ Company company_of(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) {
     try {
       if (!fs::is_regular_file(file) || file.extension() != ".json") continue;
-      const Kind* kind = kind_of(read_json(file, JsonSource::user));
+      const Kind* kind = kind_of(read_json(file, JsonSource::any));
       if (kind != nullptr && kind->schema == Schema::spec && !company.spec) company.spec = dem::read_spec(file);
       if (kind == nullptr || kind->schema != Schema::parameters || !company.parameters.empty()) continue;
       read_parameters(file);

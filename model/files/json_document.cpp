@@ -33,8 +33,8 @@ class StrictBuilder final : public nlohmann::json_sax<Json> {
     return std::in_range<std::int64_t>(value) ? put(value) : put(static_cast<double>(value));
   }
   bool number_float(double value, const std::string&) override {
-    if (source_ == JsonSource::user) {
-      if (value == 0 && std::signbit(value)) refuse_negative_zero();
+    if (source_ != JsonSource::own) {
+      if (value == 0 && std::signbit(value) && source_ == JsonSource::user) refuse_negative_zero();
       if (value == std::trunc(value) && std::abs(value) < 9.0e18) return put(static_cast<std::int64_t>(value));
     }
     return put(value);
@@ -191,7 +191,7 @@ Json parse_json(std::string_view text, const std::string& name, JsonSource sourc
   if (text.find('\0') != std::string_view::npos) {
     throw InvalidInput(fmt::format("{}: holds a NUL byte; the file must be one JSON document in UTF-8", name));
   }
-  const bool comments = source == JsonSource::user;  // are skipped
+  const bool comments = source != JsonSource::own;  // are skipped
   StrictBuilder builder(name, source);
   if (!Json::sax_parse(text.begin(), text.end(), &builder, Json::input_format_t::json, true, comments)) {
     throw InvalidInput(fmt::format("{}: is not a JSON document", name));

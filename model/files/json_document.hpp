@@ -21,6 +21,7 @@ inline constexpr int kMaxJsonDepth = 32;                 ///< deeper nesting is 
 enum class JsonSource {
   user,  ///< 2000.0 and 2e3 count as the integer 2000; -0 is refused; comments (//, /* */) are skipped
   own,   ///< numbers exactly as written by write_json
+  any,   ///< of whoever made it: as of a user, but -0 stands
 };
 
 /// `name` stands for the document in messages. Throws InvalidInput.

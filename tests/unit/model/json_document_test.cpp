@@ -22,6 +22,8 @@ TEST(JsonDocument, ReadsWhatJsonAllows) {
 }
 
 TEST(JsonDocument, TakesWholeNumbersOfUsersAsIntegers) {
+  EXPECT_TRUE(parse_json("[2e3, -0.0]", "x.json", JsonSource::any)[0].is_number_integer())
+      << "and -0 is no reason to refuse";
   EXPECT_TRUE(parse_json("[2e3]", "x.json", JsonSource::user)[0].is_number_integer());
   EXPECT_TRUE(parse_json("[2000.0]", "x.json", JsonSource::own)[0].is_number_float());
 }
