@@ -12,6 +12,7 @@
 #include "fit/prior_file.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
+#include "model/parameters_file.hpp"
 #include "python/errors.hpp"
 #include "python/inputs.hpp"
 #include "python/objects.hpp"
@@ -140,6 +141,10 @@ Predicted predict_path(const py::object& law, const py::object& path, const py::
   if (read->file.empty()) throw InvalidInput("law: was changed since it was read; save() it and give the file");
   const auto along = path_of(path);
   chain::PredictionInput input = chain::prediction_input(read->file, along->file, along->name);
+  if (parameters_to_json({input.law, {}}) != parameters_to_json({read->law, {}}))
+    throw InvalidInput(
+        fmt::format("law: {} has changed since it was read; read it again, or save() this law under another name",
+                    read->file.string()));
   const fs::path folder = file_of(output, "output"), against = file_or_none(runs.against, "against");
   if (!model.is_none()) input.model = choice_of<Rung>(model, "model");
   if (!start.is_none()) input.initial = choice_of<predict::Initial>(start, "start");

@@ -57,6 +57,12 @@ class Refusals(unittest.TestCase):
         self.refused("none", grainlaw.report, "none")
         self.refused("law", grainlaw.predict, 7, UNI, "out")
 
+    def test_a_law_whose_file_has_changed(self):
+        self.law.save("changing.json")
+        law = grainlaw.CalibratedLaw("changing.json")
+        law.with_values({"pressure.p0": 1.1 * law["pressure.p0"].value}).save("changing.json")
+        self.refused("changing.json has changed since it was read", grainlaw.predict, law, UNI, "out")
+
     def test_a_measured_strain_history_that_is_not_there(self):
         self.refused("history.csv", self.law.predict, {"initial": {"nu": 0.7}, "strain_csv": pathlib.Path("history.csv")})
 
