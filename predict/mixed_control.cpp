@@ -17,6 +17,8 @@ constexpr std::size_t kSize = kUnknowns + 7;  // the law's, six strains, shear p
 constexpr double kVanished = 1e-12;           // of the start's P: unjammed
 constexpr double kDecay = 200;                // kappa, per strain: drift is gone after a percent of it
 constexpr int kMostIterations = 60;
+constexpr int kCornerIterations = 3;
+constexpr double kNoReversal = 1e-6;  // of the stress ratio
 constexpr double kSmall = 1e-13;      // of a residual over the moduli
 constexpr double kDifference = 1e-7;  // of the free rates, for the tangent
 
@@ -250,6 +252,29 @@ Deviator<double> shear_direction_of(const Path& path) {
   return Deviator<double>::Zero();
 }
 
+/// The state where the segment begins, of which a corner that turns the shear back is by all strains, the free ones too: these
+/// depend in turn on whether it does.
+ControlledState past_corner(const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+                            const PathSegment& segment, double nu_0, const ControlledState& before) {
+  ControlledState from = before;
+  for (int i = 0; i < kCornerIterations; ++i) {
+    const Eigen::Matrix3d D = ControlledRate(parameters, rung, coupling, segment, nu_0, from)(0, from).strain;
+    from.law = before.law;
+    turn_corner(rung, from.law, law_direction(Eigen::Matrix3d(D + segment.spin)));
+  }
+  return from;
+}
+
+/// Whether loading ends between corners, by the strain between rows: what has no event here (docs/theory/law.md, Events).
+bool misses_a_reversal(const std::vector<PredictedRow>& rows, int segment) {
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows[i - 1].segment != segment || rows[i].segment != segment) continue;
+    const LawDirection step = law_direction(StrainRate{rows[i].strain.tensor - rows[i - 1].strain.tensor});
+    if (step.de > 0 && rows[i].state.P > 0 && reversal_value(rows[i].state, step) < -kNoReversal) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Coupling coupling, const Path& path,
@@ -269,10 +294,13 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
     const PathSegment& segment = path.segments[k];
     const int index = static_cast<int>(k);
     const auto add_row = [&](const ControlledState& at) {
+      if (at.nu(path.nu) > kMaxVolumeFraction)
+        fail(k, at, path.nu,
+             fmt::format("is denser than nu = {}, which no packing is; give another extent or stress",
+                         kMaxVolumeFraction));
       prediction.rows.push_back(row_of({index, Strain{at.strain}, at.shear_path, at.nu(path.nu)}, at.law, N));
     };
-    ControlledState from = y;
-    turn_corner(rung, from.law, law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin)));
+    const ControlledState from = past_corner(parameters, rung, coupling, segment, path.nu, y);
     // Once to see where it ends, once for the rows.
     ControlledWalk first(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
     const Arrival end = first.to(first.farthest());
@@ -302,6 +330,13 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
     }
   }
   conclude(prediction, range, before);
+  for (std::size_t k = 0; rung == Rung::memory && k < path.segments.size(); ++k) {
+    if (misses_a_reversal(prediction.rows, static_cast<int>(k)))
+      prediction.warnings.push_back(fmt::format(
+          "loading ends within segments[{}], which the memory rung sees at corners only where stresses are given; end "
+          "the segment there",
+          k));
+  }
   return prediction;
 }
 

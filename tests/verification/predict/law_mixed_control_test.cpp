@@ -124,6 +124,49 @@ TEST(MixedControl, StrainsGivenBackLeadToTheSameStress) {
   expect_figure("mixed.strain_given_back", off, 1e-7);
 }
 
+// Where the free strains alone shear, they alone turn the shear back: memory begins anew there as along the same strains given.
+TEST(MixedControl, ACornerOfFreeStrainsIsAReversal) {
+  const LawParameters<double> p = testing::memory_parameters();
+  const auto end_of = [&](const std::vector<PathSegment>& segments) {
+    return predict_by_law(Rung::memory, p, Coupling::energy, {0.72, Branch::unloading, segments},
+                          predict::state_from_law(p, 0.72), 50, {1e-10, 1e-14}, {}, {})
+        .rows.back()
+        .state;
+  };
+  std::vector<PathSegment> by_stress, by_strain;
+  for (const double sense : {1.0, -1.0}) {
+    by_stress.push_back({Mode::tensor, {}, ExtentKind::eps_dev, 0.03});
+    by_stress.back().conditions = {{5, Quantity::stress, 0.1 * sense}};
+    by_strain.push_back({Mode::tensor, {}, ExtentKind::eps_dev, 0.03});
+    by_strain.back().direction.tensor(0, 1) = by_strain.back().direction.tensor(1, 0) = -sense;
+  }
+  const LawState<double> found = end_of(by_stress), expected = end_of(by_strain);
+  EXPECT_NEAR(found.P / expected.P, 1, 1e-6);
+  EXPECT_NEAR((found.sigma - expected.sigma).norm() / expected.P, 0, 1e-5);
+  EXPECT_NEAR((found.F - expected.F).norm(), 0, 1e-5);
+}
+
+// Between corners it has no event for that: then it says so.
+TEST(MixedControl, LoadingThatEndsWithinASegmentIsSaid) {
+  const LawParameters<double> p = testing::memory_parameters();
+  const auto warnings_of = [&](Rung rung, const PathSegment& last) {
+    const Path path{
+        0.72,
+        Branch::unloading,
+        {segment(Mode::D2, ExtentKind::eps_dev, 0.05), segment(Mode::D2, ExtentKind::eps_dev, 0.008, {}, true), last}};
+    return predict_by_law(rung, p, Coupling::energy, path, predict::state_from_law(p, 0.72), 50, {1e-9, 1e-13}, {}, {})
+        .warnings;
+  };
+  // compression takes the stress ratio down faster than a little shear brings it up
+  PathSegment compress{Mode::tensor, {}, ExtentKind::target_nu, 0.76};
+  compress.direction.tensor = direction_of(Mode::ISO).tensor + 0.002 * direction_of(Mode::D2).tensor;
+  ASSERT_EQ(warnings_of(Rung::memory, compress).size(), 1u);
+  EXPECT_NE(warnings_of(Rung::memory, compress)[0].find("loading ends within segments[2]"), std::string::npos)
+      << warnings_of(Rung::memory, compress)[0];
+  EXPECT_TRUE(warnings_of(Rung::evolution, compress).empty());
+  EXPECT_TRUE(warnings_of(Rung::memory, segment(Mode::D2, ExtentKind::eps_dev, 0.05)).empty());
+}
+
 TEST(MixedControl, WithoutConditionsItIsThePrediction) {
   const LawParameters<double> p = testing::coupled_parameters();
   const Path path{0.70,
@@ -164,6 +207,9 @@ TEST(MixedControl, WhatCannotBeKeptOrReachedIsSaid) {
   EXPECT_NE(message({0.70, Branch::unloading, {segment(Mode::D2, ExtentKind::target_stress_ratio, 0.5)}})
                 .find("target_stress_ratio = 0.5 is not reached"),
             std::string::npos);
+  const std::string dense = message({0.72, Branch::unloading, {segment(Mode::ISO, ExtentKind::target_P_star, 0.5)}});
+  EXPECT_NE(dense.find("segments[0] at nu = "), std::string::npos) << dense;
+  EXPECT_NE(dense.find("is denser than nu = 0.9"), std::string::npos) << dense;
   const LawParameters<double> p = testing::coupled_parameters();
   EXPECT_THROW(predict_by_law(Rung::reduced, p, Coupling::energy,
                               {0.70, Branch::unloading, {segment(Mode::ISO, ExtentKind::target_P_star, 0.05)}},
