@@ -157,18 +157,18 @@ void require_a_curve(const predict::PredictionFolder& content) {
 
 /// Which rung the path needs, and what each richer one changes on the curves from the law's start.
 void add_advice(const Law& law, predict::PredictionFolder& content) {
-  // where the law decides where the path leads, two rungs have no rows at the same strain
-  if (law_decides(law.path)) {
-    content.needed = {Rung::evolution, "the law decides the strain"};
-    content.recommended = {law.rungs.back(), false, "the richest; where the law decides the strain none is rehearsed"};
-    return;
-  }
-  content.needed = predict::rung_needed(law.calibrated.parameters, law.segments);
   std::vector<Rung> rungs = law.rungs;
   std::erase_if(rungs, [&](Rung rung) {
     return std::ranges::find(content.curves, rung, &predict::PredictedCurve::model) == content.curves.end();
   });
   if (rungs.empty()) rungs = law.rungs;  // all failed
+  // where the law decides where the path leads, two rungs have no rows at the same strain
+  if (law_decides(law.path)) {
+    content.needed = {Rung::evolution, "the law decides the strain"};
+    content.recommended = {rungs.back(), false, "the richest; where the law decides the strain none is rehearsed"};
+    return;
+  }
+  content.needed = predict::rung_needed(law.calibrated.parameters, law.segments);
   content.recommended = predict::recommended_rung(law.calibrated.rehearsals, law.segments, rungs, content.needed);
   const predict::PredictedCurve* cheaper = nullptr;
   for (const predict::PredictedCurve& curve : content.curves) {

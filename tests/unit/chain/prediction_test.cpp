@@ -81,6 +81,15 @@ TEST_F(PathPrediction, WarnsOfARungThatFails) {
                           [](const std::string& line) { return line.starts_with("warning: memory is left out: "); }));
 }
 
+TEST_F(PathPrediction, RecommendsNoRungThatFailedWhereTheLawDecidesTheStrain) {
+  PredictionInput failing = input({Rung::memory});
+  failing.path.path.segments = {{Mode::D2, direction_of(Mode::D2), ExtentKind::target_stress_ratio, 0.1}};
+  const predict::PredictionFolder found = predict_path(failing, out(), {});
+  ASSERT_EQ(found.failures.size(), 1u);
+  EXPECT_EQ(found.failures[0].model, Rung::memory);
+  EXPECT_EQ(found.recommended.rung, Rung::evolution);
+}
+
 TEST_F(PathPrediction, FailsWhereEveryRungFailsAndLeavesNoFolder) {
   for (const bool with_runs : {false, true}) {
     PredictionInput failing = input({Rung::memory});
@@ -125,9 +134,9 @@ TEST_F(PathPrediction, LeavesOutRungsThatTheDataDoNotTell) {
   content = predict_path(poor, out(), {});
   ASSERT_EQ(content.curves.size(), 1u);
   EXPECT_EQ(content.curves[0].model, Rung::reduced);
-  EXPECT_EQ(
-      content.warnings,
-      std::vector<std::string>{"evolution, memory left out: parameters.anisotropy.a2 is not identified: add a test"});
+  EXPECT_EQ(content.warnings,
+            (std::vector<std::string>{"evolution left out: parameters.anisotropy.a2 is not identified: add a test",
+                                      "memory left out: parameters.memory.k is not identified: add a test"}));
   poor.model = Rung::evolution;
   EXPECT_THROW(predict_path(poor, out(), {}), InvalidInput);
   poor.model.reset();
