@@ -42,6 +42,8 @@ void keep_as_rehearsal(const PredictOptions& options, const fs::path& folder, co
 ExitCode run_prediction(const PredictOptions& options, Session& session) {
   if (options.rehearse && !options.dem && options.against.empty())
     throw InvalidInput("predict: --rehearse keeps runs; give --against or --dem too");
+  if (!options.dem && !(options.seeds.empty() && options.spec.empty() && options.store.empty()))
+    throw InvalidInput("predict: --seeds, --spec and --store are of new runs; give --dem too");
   chain::PredictionInput input = chain::read_prediction_input(options.parameters, options.path);
   input.model = options.model;
   input.initial = options.initial;
@@ -78,8 +80,9 @@ Task declare_predict(CLI::App& command) {
             "compare with finished runs of the path: the folder of a data set, or of a prediction with --dem")
       ->excludes(dem);
   add_choice<Rung>(command, "--model", options->model, "rung of the law; default: those that are calibrated");
-  add_choice<predict::Initial>(command, "--initial", options->initial,
-                               "start from the law or from measured values; default: law, with --dem both");
+  add_choice<predict::Initial>(
+      command, "--initial", options->initial,
+      "start from the law or from measured values; default: law, with --dem or --against both");
   add_seeds(command, "--seeds", options->seeds, "of the new packings, e.g. 201-205 or 1,3,7-9");
   add_value(command, "--spec", options->spec, "FILE",
             "SPEC of the new packings; default: spec.resolved.json beside PARAMETERS");
