@@ -156,6 +156,9 @@ ModeComparison read_calibration(const std::filesystem::path& file, Calibration& 
     read_fields(document.at("claims"), modes.claims);
     calibration.unused_tests = document.at("unused_tests").get<std::vector<std::string>>();
     calibration.warnings = document.at("warnings").get<std::vector<std::string>>();
+    if (document.at("dataset_digest") != calibration.law.dataset_digest)
+      calibration.warnings.emplace_back(
+          "calibration.json is of another data set than parameters.json (digests differ)");
   } catch (const Json::exception& error) {
     throw InvalidInput(fmt::format("{}: is no calibration.json of this version: {}; run grainlaw calibrate again",
                                    one_line(file.string(), 200), one_line(error.what(), 200)));

@@ -137,6 +137,8 @@ OrderedJson rung_to_json(const PredictionFolder& content) {
 }
 
 void write_prediction(const fs::path& folder, const PredictionFolder& content) {
+  fs::remove(folder /
+             "prediction.json");  // first, and written last: what a kill leaves is no mixture of two predictions
   OrderedJson curves = OrderedJson::array();
   for (const PredictedCurve& curve : content.curves) {
     write_prediction_series(folder / curve.file, curve.prediction.rows);
@@ -188,7 +190,13 @@ PredictionFolder read_prediction(const fs::path& folder) {
     read_fields(document.at("failures"), content.failures);
     document.at("dem");
   });
-  for (PredictedCurve& curve : content.curves) curve.prediction.rows = read_prediction_series(folder / curve.file);
+  for (std::size_t k = 0; k < content.curves.size(); ++k) {
+    PredictedCurve& curve = content.curves[k];
+    curve.prediction.rows = read_prediction_series(folder / curve.file);
+    if (document["curves"][k].value("rows", Json()) != curve.prediction.rows.size())
+      throw InvalidInput(fmt::format("{}: has {} rows, not those of its prediction.json; run grainlaw predict again",
+                                     one_line((folder / curve.file).string(), 200), curve.prediction.rows.size()));
+  }
   if (document["dem"].is_null()) return content;
   content.dem = read_dataset(folder / "dem");
   const Json comparison = read_json(compared, JsonSource::own);

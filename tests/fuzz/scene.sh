@@ -78,7 +78,7 @@ slim "$source/fit/packing_prior.json" 2 | jq -c '. + {format: "grainlaw prior", 
 slim "$work/law/calibration.json" 2 | jq -c 'del(.provenance)' >calibration/calibration.json
 slim "$work/law/fitted_paths.json" >fitted_paths/fitted_paths.json
 slim "$work/study/study.json" >study/study.json
-slim "$work/prediction/prediction.json" | jq -c 'del(.provenance.command) | .curves |= .[:1]' >prediction/prediction.json
+slim "$work/prediction/prediction.json" | jq -c 'del(.provenance.command) | .curves |= (.[:1] | map(.rows = 3))' >prediction/prediction.json
 slim "$work/prediction/comparison.json" >comparison/comparison.json
 cp prediction/prediction.json comparison
 mkdir comparison/dem

@@ -262,6 +262,13 @@ TEST_F(ResultFiles, PredictionIsReadBack) {
   EXPECT_EQ(read.bands, "of the mean curve");
   ASSERT_TRUE(read.dem);
   EXPECT_EQ(read.dem->digest, written.dem->digest);
+  // a curve that is cut, or of another prediction
+  auto rows = written.curves[0].prediction.rows;
+  rows.pop_back();
+  predict::write_prediction_series(folder_ / written.curves[0].file, rows);
+  EXPECT_NE(refusal([&] { predict::read_prediction(folder_); }).find(written.curves[0].file + ": has "),
+            std::string::npos);
+  predict::write_prediction_series(folder_ / written.curves[0].file, written.curves[0].prediction.rows);
   std::filesystem::remove(folder_ / "comparison.json");
   EXPECT_NE(refusal([&] { predict::read_prediction(folder_); }).find("comparison.json"), std::string::npos);
 }

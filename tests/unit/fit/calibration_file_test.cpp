@@ -53,6 +53,7 @@ TEST_F(CalibrationFile, IsReadBack) {
   const Calibration c = odd_calibration();
   write_calibration(folder_ / "calibration.json", c, {}, {}, {{"command", "test"}});
   Calibration read;
+  read.law.dataset_digest = c.law.dataset_digest;
   read_calibration(folder_ / "calibration.json", read);
   ASSERT_EQ(read.stages.size(), 1u);
   EXPECT_EQ(read.stages[0].window, c.stages[0].window);
@@ -89,6 +90,11 @@ TEST_F(CalibrationFile, IsReadBack) {
   EXPECT_TRUE(std::isnan(read.left_out[1].value[parameter_index("shear.nu_c")])) << "has no error to compare with";
   EXPECT_EQ(read.unused_tests, c.unused_tests);
   EXPECT_EQ(read.warnings, c.warnings);
+  Calibration of_other_data;
+  of_other_data.law.dataset_digest = "of another data set";
+  read_calibration(folder_ / "calibration.json", of_other_data);
+  ASSERT_EQ(of_other_data.warnings.size(), c.warnings.size() + 1);
+  EXPECT_NE(of_other_data.warnings.back().find("than parameters.json"), std::string::npos);
   EXPECT_NE(refusal([&] { read_calibration(put("old.json", "{}"), read); }).find("run grainlaw calibrate again"),
             std::string::npos);
 }
