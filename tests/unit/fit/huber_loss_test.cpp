@@ -108,19 +108,6 @@ TEST(Robust, TheErrorCountsThatTheReachIsMeasured) {
   EXPECT_NEAR(error / jackknife, 1, 0.15);
 }
 
-// A stage numbers the packings of the whole calibration, of which one may have no rows of it.
-TEST(Robust, APackingWithoutRowsCountsForNothing) {
-  const auto error_of = [](int last) {
-    std::vector<ResidualBlock> packings{values({-2, -1, 0.5, 1, 7}), values({-1, 0, 0.2, 1.5, 9}),
-                                        values({-3, -1, 1, 2, 4})};
-    for (int c = 0; c < 3; ++c) packings[static_cast<std::size_t>(c)].cluster = c < 2 ? c : last;
-    return fit_stage("huber", "", {{{"x", 0, -100, 100, 1}}, packings, Loss::huber}, "", 1, {})
-        .stage.estimates[0]
-        .estimate.standard_error;
-  };
-  EXPECT_NEAR(error_of(5), error_of(2), 1e-9);
-}
-
 TEST(Robust, WithoutOutliersItIsTheMean) {
   const Solution s = huber({1, 2, 3, 4, 1, 2, 3, 4});
   EXPECT_NEAR(s.x(0), 2.5, 1e-7);  // about the square root of machine precision: the cost feels no less
