@@ -44,8 +44,9 @@ struct Trajectory {
   int excluded = 0;                    ///< rows of the segment that do not
 
   double nu(double e) const { return nu_start * std::exp(direction.dx * e); }  ///< volume fraction at e [-]
-  double eps_dev(double e) const { return (dev_start + direction.N * (direction.de * e)).norm(); }  ///< likewise
-  double eps_vol(double e) const { return vol_start + direction.dx * e; }                           ///< likewise
+  /// Strain at e, since the start of the test [-].
+  double eps_dev(double e) const { return (dev_start + direction.N * (direction.de * e)).norm(); }
+  double eps_vol(double e) const { return vol_start + direction.dx * e; }
 
   bool constant_volume() const { return direction.de > 0 && std::abs(direction.dx) <= 1e-12 * direction.de; }
 };

@@ -8,7 +8,7 @@
 
 namespace grainlaw::predict {
 
-/// Calls work(first, end) of ranges that cover [0, count), each on a thread of its own. Throws what the first failing range
+/// Calls work(first, end) of as many ranges as threads that cover [0, count). Throws what the first failing range
 /// throws, when all have ended.
 template <class Work>
 void in_ranges(std::size_t count, int threads, const Work& work) {
