@@ -62,13 +62,14 @@ TEST(Robust, TheErrorIsThatOfItsEstimate) {
   EXPECT_NEAR(n * error * error, 1 / 0.95, 0.01);
 }
 
-/// The value that packings have in common, of their rows.
-Estimate common_value(const std::vector<std::vector<double>>& rows) {
+/// The value that packings have in common, of their rows; `absent` numbers are left out before the last packing's.
+Estimate common_value(const std::vector<std::vector<double>>& rows, int absent = 0) {
   std::vector<ResidualBlock> packings;
   for (const std::vector<double>& y : rows) {
     packings.push_back(values(y));
     packings.back().cluster = static_cast<int>(packings.size()) - 1;
   }
+  packings.back().cluster += absent;
   return fit_stage("huber", "", {{{"x", 0, -100, 100, 1}}, packings, Loss::huber}, "", 1, {})
       .stage.estimates[0]
       .estimate;
@@ -106,6 +107,8 @@ TEST(Robust, TheErrorCountsThatTheReachIsMeasured) {
   }
   const double jackknife = std::sqrt((n - 1) / n * (squares - sum * sum / n));
   EXPECT_NEAR(error / jackknife, 1, 0.15);
+  // a stage has the numbers of the whole calibration, of which some packings may have no rows of it
+  EXPECT_NEAR(common_value(rows, 8).standard_error, error, 1e-9);
 }
 
 TEST(Robust, WithoutOutliersItIsTheMean) {
