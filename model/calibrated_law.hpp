@@ -42,7 +42,7 @@ struct Estimate {
 /// deviations; NaN where no path was run on two packings.
 struct PackingScatter {
   int packings = 0;                                               ///< most runs of one path
-  int degrees_of_freedom = 0;                                     ///< runs beyond the first of each path, all paths
+  double degrees_of_freedom = 0;                                  ///< of the least known of the three
   double compression = std::numeric_limits<double>::quiet_NaN();  ///< of P*/B*, B* of ISO unloading [-]
   double s_par = std::numeric_limits<double>::quiet_NaN();        ///< of s_par [-]
   double F_par = std::numeric_limits<double>::quiet_NaN();        ///< of F_par [-]

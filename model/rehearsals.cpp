@@ -12,13 +12,6 @@ constexpr double kNoStrain = 1e-9;  // strain per unit of the path parameter tha
 constexpr double kNoTurn = 1e-6;    // 1 - <N, N before> by rounding
 constexpr double kSlack = 1e-3;     // of densities and strains that are as good as rehearsed
 
-bool same_path(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b) {
-  return std::ranges::equal(a, b, [](const StraightSegment& p, const StraightSegment& q) {
-    return p.direction.tensor.isApprox(q.direction.tensor, 1e-9) && std::abs(p.length - q.length) < 1e-9 &&
-           std::abs(p.nu_start - q.nu_start) < 1e-9 && p.spin.isApprox(q.spin, 1e-9);
-  });
-}
-
 const RehearsedRung* rung_of(const Rehearsal& rehearsal, Rung rung) {
   const auto found = std::ranges::find(rehearsal.rungs, rung, &RehearsedRung::rung);
   return found == rehearsal.rungs.end() ? nullptr : &*found;

@@ -30,9 +30,6 @@ bool counts_contacts(const TestRecord& test);
 inline constexpr const char* kAddFabric = "no row tells the fabric; add the columns fabric_xx ... fabric_xy";
 inline constexpr const char* kAddContacts = "no row counts contacts; add the columns C_star and rattler_fraction";
 
-/// Volume fractions at which tests of different packings start alike: kept states differ by rounding, those of others may by more.
-inline constexpr double kSameDensity = 1e-3;
-
 /// Independent of one another are packings (seeds), not the runs that start from one: the test's packing, from 0.
 int packing_of(const DataSet& data, const TestRecord& test);
 

@@ -8,7 +8,7 @@
 
 namespace grainlaw::fit {
 
-/// Of all tests that the fit reads; rows at nu >= `nu_min` and with pressure. Runs of one path have as many rows.
+/// Of all tests that the fit reads, the first of each packing on a path; their rows at the same strains and at nu >= `nu_min`.
 PackingScatter packing_scatter(const DataSet& data, const LawParameters<double>& law, double nu_min);
 
 }  // namespace grainlaw::fit

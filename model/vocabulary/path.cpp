@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/vocabulary/error.hpp"
 #include "model/vocabulary/portable.hpp"
@@ -194,6 +195,18 @@ StraightSegment resolve(const PathSegment& segment, std::size_t index, double nu
                            segment.spin, portable};
   check_nu(straight.nu(straight.length), fmt::format("segments[{}]", index));
   return straight;
+}
+
+bool same_path(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b) {
+  constexpr double kSameLength = 0.01;
+  const auto alike = [](const Eigen::Matrix3d& p, const Eigen::Matrix3d& q) {
+    return (p - q).norm() <= kSameLength * std::max({p.norm(), q.norm(), 1.0});
+  };
+  return std::ranges::equal(a, b, [&](const StraightSegment& p, const StraightSegment& q) {
+    return alike(p.direction.tensor, q.direction.tensor) && alike(p.spin, q.spin) &&
+           std::abs(p.nu_start - q.nu_start) <= kSameDensity &&
+           std::abs(p.length - q.length) <= kSameLength * std::max(p.length, q.length);
+  });
 }
 
 std::vector<StraightSegment> resolve(const Path& path, bool portable) {
