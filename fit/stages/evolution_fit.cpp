@@ -19,34 +19,8 @@ std::string quantity_name(char symbol, std::size_t axis) {
   return axis == 0 ? std::string(1, symbol) + "_par" : std::string(1, symbol) + "_axis" + std::to_string(axis + 1);
 }
 
-/// P* of `t` at path parameter e, between its start and its last row and as far beyond as the next row would be.
-std::optional<double> pressure_at(const Trajectory& t, double e) {
-  if (t.rows.empty()) return std::nullopt;
-  auto after = std::ranges::lower_bound(t.rows, e, {}, &TrajectoryRow::e);
-  if (after == t.rows.end()) --after;
-  const TrajectoryRow before = after == t.rows.begin() ? TrajectoryRow{0, t.start} : *std::prev(after);
-  const double share = (e - before.e) / (after->e - before.e), P = std::lerp(before.data.P, after->data.P, share);
-  return share > -1 && share < 2 && P > 0 ? std::optional(P) : std::nullopt;
-}
-
-/// Mean P* of isotropic tests at the volume fraction of a row of one of them. Weights by each row's own P* would be larger
-/// where its packing or noise makes it small, and the law too low, by twice the variance of ln P*.
-double mean_pressure(const std::vector<Trajectory>& all, const Trajectory& own, const TrajectoryRow& row) {
-  double sum = row.data.P;
-  int passed = 1;
-  for (const Trajectory& t : all) {
-    if (&t == &own || !t.starts_on_law) continue;
-    const auto P = pressure_at(t, std::log(own.nu(row.e) / t.nu_start) / t.direction.dx);
-    if (!P) continue;
-    sum += *P;
-    ++passed;
-  }
-  return sum / passed;
-}
-
-ResidualBlock evolution_block(const std::vector<Trajectory>& all, const Trajectory& t,
-                              const LawParameters<double>& fixed, const std::vector<std::size_t>& index,
-                              const CalibrationOptions& options) {
+ResidualBlock evolution_block(const Trajectory& t, const LawParameters<double>& fixed,
+                              const std::vector<std::size_t>& index, const CalibrationOptions& options) {
   const auto rows = static_cast<Eigen::Index>(t.rows.size());
   const auto axes = static_cast<Eigen::Index>(t.axes.size());
   ResidualBlock block;
@@ -62,10 +36,13 @@ ResidualBlock evolution_block(const std::vector<Trajectory>& all, const Trajecto
     }
     block.channels.push_back(channel);
   };
+  // Relative to the law so far: by each row's own P* weights would be larger where its packing or noise makes it small, and the
+  // law too low, by twice the variance of ln P*.
   add(
       "P_star", 0, [](const LawState<double>& y) { return y.P; },
       [&](const TrajectoryRow& row) {
-        return t.starts_on_law ? row.weight / (options.pressure_scale * mean_pressure(all, t, row)) : 0.0;
+        const double P = fixed.isotropic.P_star(t.nu(row.e));
+        return t.starts_on_law && P > 0 ? row.weight / (options.pressure_scale * P) : 0.0;
       });
   for (Eigen::Index a = 0; a < axes; ++a) {
     const Deviator<double>& n = t.axes[static_cast<std::size_t>(a)];
@@ -124,7 +101,7 @@ std::vector<ResidualBlock> evolution_blocks(const std::vector<Trajectory>& traje
   std::vector<std::size_t> index;
   for (const std::string& name : free) index.push_back(parameter_index(name));
   std::vector<ResidualBlock> blocks;
-  for (const Trajectory& t : trajectories) blocks.push_back(evolution_block(trajectories, t, law, index, options));
+  for (const Trajectory& t : trajectories) blocks.push_back(evolution_block(t, law, index, options));
   return blocks;
 }
 
