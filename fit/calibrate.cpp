@@ -173,7 +173,8 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   calibration.unused_tests = data.unused;
   calibration.warnings = outlier_warnings(data, options);
   std::ranges::move(packing_warnings(data), std::back_inserter(calibration.warnings));
-  fit_unloading_laws("ISO unloading", isotropic_series(data, options), calibration, options, control);
+  const std::vector<DensitySeries> unloading = isotropic_series(data, options);
+  fit_unloading_laws("ISO unloading", unloading, calibration, options, control);
   fit_steady_laws(Mode::D2, data, calibration, options, control);
   fit_shear_laws(data, calibration, options, control);
   const std::vector<Trajectory> trajectories =
@@ -188,6 +189,7 @@ Calibration calibrate(const std::vector<TestRecord>& tests, const CalibrationOpt
   } else {
     leave_out_fabric(calibration, options, control);
   }
+  fit_overlap_law("ISO unloading", unloading, calibration, options, control);
   calibration.law.covariance = calibration.errors.covariance();
   calibration.size = size_of(tests);
   moderate_errors(options, calibration);

@@ -44,6 +44,7 @@ std::vector<Description> describe(const std::vector<TestRecord>& tests, double n
   if (points >= kPointsNeeded) {
     Calibration calibration = nothing_known();
     fit_unloading_laws("UNI unloading", series, calibration, options, control);
+    fit_overlap_law("UNI unloading", series, calibration, options, control);
     calibration.law.range.nu_min = least_nu(series);
     for (const DensitySeries& s : series) {
       for (const DensityPoint& p : s.points)

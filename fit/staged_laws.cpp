@@ -84,15 +84,22 @@ void fit_state_law(const StateLawName& of, const std::vector<DensitySeries>& ser
   for (const StageDefinition& stage : state_law_stages(of, counted, window)) run(stage, calibration, options, control);
 }
 
+std::string window_of(const std::string& branch, const CalibrationOptions& options) {
+  return fmt::format("{}, nu >= {:g}", branch, options.iso_nu_min);
+}
+
 }  // namespace
 
 void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
                         const CalibrationOptions& options, const RunControl& control) {
-  const std::string window = fmt::format("{}, nu >= {:g}", branch, options.iso_nu_min);
-  const auto next = [&](const StageDefinition& stage) { run(stage, calibration, options, control); };
+  const std::string window = window_of(branch, options);
   fit_state_law(kUnloadingLaw, series, window, calibration, options, control);
-  next(overlap_stage(series, window, calibration.law.parameters.isotropic.pressure.nu_c));
-  next(fabric_trace_stage(series, window));
+  run(fabric_trace_stage(series, window), calibration, options, control);
+}
+
+void fit_overlap_law(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
+                     const CalibrationOptions& options, const RunControl& control) {
+  run(overlap_stage(series, window_of(branch, options)), calibration, options, control);
 }
 
 void fit_steady_laws(Mode mode, const DataSet& data, Calibration& calibration, const CalibrationOptions& options,

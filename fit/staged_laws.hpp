@@ -19,9 +19,13 @@ Calibration nothing_known();
 void run(const StageDefinition& stage, Calibration& calibration, const CalibrationOptions& options,
          const RunControl& control);
 
-/// Stages "coordination", "rattlers", "pressure", "overlap", "fabric_trace". `branch` names the rows in the stages' windows.
+/// Stages "coordination", "rattlers", "pressure", "fabric_trace". `branch` names the rows in the stages' windows.
 void fit_unloading_laws(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
                         const CalibrationOptions& options, const RunControl& control);
+
+/// Stage "overlap" on the same rows, once nothing moves the nu_c of Eq. (14) any more.
+void fit_overlap_law(const std::string& branch, const std::vector<DensitySeries>& series, Calibration& calibration,
+                     const CalibrationOptions& options, const RunControl& control);
 
 /// Stages "steady_coordination", "steady_rattlers", "steady_pressure" on steady shear of `mode`; left out, with the
 /// remedy, when no test reaches it.

@@ -58,16 +58,6 @@ std::function<void(StageFit&, const LawParameters<double>&)> require_densities(c
   };
 }
 
-/// d misfit/d parameter, row by row.
-template <class Slope>
-Eigen::VectorXd slope_of(const std::vector<DensitySeries>& series, const Slope& slope) {
-  std::vector<double> values;
-  for (const DensitySeries& s : series) {
-    for (const DensityPoint& p : s.points) values.push_back(slope(p));
-  }
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 /// A stage of rows of `series`; free are the parameters of `group`.
 StageDefinition density_stage(const std::string& name, const std::string& group, const std::string& window,
                               const std::vector<DensitySeries>& series) {
@@ -120,13 +110,7 @@ StageDefinition rattlers_stage(const StateLawName& of, const std::vector<Density
         },
         [](const DensityPoint& p) { return p.rattler_fraction; });
   };
-  stage.given = {of.prefix + std::string("coordination.nu_c"), [of, series](const LawParameters<double>& law) {
-                   const StateLaw<double>& found = law.*of.law;
-                   const double nu_c = found.coordination.nu_c;
-                   return slope_of(series, [&](const DensityPoint& p) {
-                     return found.rattlers.fraction(p.nu, nu_c) * found.rattlers.phi_v * p.nu / (nu_c * nu_c);
-                   });
-                 }};
+  stage.given = {of.prefix + std::string("coordination.nu_c")};
   stage.judge = require_densities(series, 2);
   return stage;
 }
@@ -192,7 +176,7 @@ std::vector<StageDefinition> left_out_state_law(const StateLawName& of, const st
   return stages;
 }
 
-StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const std::string& window, double nu_c) {
+StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const std::string& window) {
   for (const DensitySeries& s : series) {
     if (std::any_of(s.points.begin(), s.points.end(),
                     [](const DensityPoint& p) { return std::isnan(p.mean_overlap); })) {
@@ -201,16 +185,16 @@ StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const st
     }
   }
   StageDefinition stage = density_stage("overlap", "overlap", window, series);
-  stage.window += fmt::format(", nu_c = {:.5f} of the pressure", nu_c);
-  stage.blocks = [series, nu_c](const LawParameters<double>&) {
+  stage.window += ", nu_c of the pressure";
+  stage.blocks = [series](const LawParameters<double>& law) {
     return blocks_of<Jet1>(
         series, "mean_overlap", 1,
-        [nu_c](const DensityPoint& p, const auto* x) { return x[0] * std::log(p.nu / nu_c) - p.mean_overlap; },
+        [nu_c = law.isotropic.pressure.nu_c](const DensityPoint& p, const auto* x) {
+          return x[0] * std::log(p.nu / nu_c) - p.mean_overlap;
+        },
         [](const DensityPoint& p) { return p.mean_overlap; });
   };
-  stage.given = {"pressure.nu_c", [series, nu_c](const LawParameters<double>& law) {
-                   return slope_of(series, [&](const DensityPoint&) { return -law.overlap_D / nu_c; });
-                 }};
+  stage.given = {"pressure.nu_c"};
   return stage;
 }
 

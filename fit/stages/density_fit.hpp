@@ -32,8 +32,9 @@ StageDefinition pressure_of_assumed_contacts(const StateLawName& of, const std::
 /// They without any data.
 std::vector<StageDefinition> left_out_state_law(const StateLawName& of, const std::string& remedy);
 
-/// Stage "overlap": D of Eq. (13) with `nu_c` of the pressure. Left out when the data set does not contain overlaps.
-StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const std::string& window, double nu_c);
+/// Stage "overlap": D of Eq. (13) with the final nu_c of the pressure: after the last stage that moves it. Left out when the data
+/// set does not contain overlaps.
+StageDefinition overlap_stage(const std::vector<DensitySeries>& series, const std::string& window);
 
 /// Stage "fabric_trace": g3. Left out when the tests tell no fabric or count no contacts.
 StageDefinition fabric_trace_stage(const std::vector<DensitySeries>& series, const std::string& window);

@@ -126,7 +126,7 @@ StageDefinition evolution_stage(const std::vector<Trajectory>& trajectories, con
   stage.blocks = [=, free = stage.free](const LawParameters<double>& law) {
     return evolution_blocks(trajectories, law, free, options);
   };
-  stage.given_groups = {"coordination", "rattlers"};
+  stage.given = {"coordination", "rattlers"};
   stage.judge = [=](StageFit& fit, const LawParameters<double>& law) {
     check_evolution(trajectories, law, options, fit);
     if (anisotropy) check_coupling(coupling, kChangeTheVolume, fit);

@@ -37,8 +37,8 @@ StageDefinition lode_stage(const std::vector<Trajectory>& others, const Calibrat
   stage.blocks = [=, free = stage.free](const LawParameters<double>& law) {
     return evolution_blocks(others, law, free, options);
   };
-  stage.given_groups = {"coordination", "rattlers",   "pressure",    "stress_ratio_max",
-                        "stress_rate",  "fabric_max", "fabric_rate", "anisotropy"};
+  stage.given = {"coordination", "rattlers",   "pressure",    "stress_ratio_max",
+                 "stress_rate",  "fabric_max", "fabric_rate", "anisotropy"};
   return stage;
 }
 

@@ -169,10 +169,10 @@ StageDefinition memory_stage(const std::vector<Trajectory>& trajectories, const 
     }
     return blocks;
   };
-  stage.given_groups = {"coordination",    "rattlers",        "pressure",         "steady_coordination",
-                        "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"};
+  stage.given = {"coordination",    "rattlers",        "pressure",         "steady_coordination",
+                 "steady_rattlers", "steady_pressure", "stress_ratio_max", "fabric_max"};
   if (std::ranges::any_of(trajectories, [](const Trajectory& t) { return std::abs(t.direction.lode) > kNoLode; }))
-    stage.given_groups.push_back("lode");
+    stage.given.push_back("lode");
   stage.judge = [](StageFit& fit, const LawParameters<double>&) { withdraw_vague(fit); };
   stage.coupled = stage.profiled = true;
   return stage;

@@ -6,19 +6,6 @@
 #include "fit/statistics/profile.hpp"
 
 namespace grainlaw::fit {
-namespace {
-
-void inherit_errors(const StageDefinition& stage, const LawParameters<double>& law, const FoundErrors& found,
-                    int threads, StageFit& fit) {
-  if (found.influence.cols() == 0) return;
-  if (stage.given) {
-    const auto k = static_cast<Eigen::Index>(parameter_index(stage.given->name));
-    inherit_error(stage.given->slope(law), found.influence.row(k), found.degrees_of_freedom(k), fit);
-  }
-  inherit_error(stage.given_groups, found, law, stage.blocks, threads, fit);
-}
-
-}  // namespace
 
 std::vector<std::string> parameters_of(const std::string& group) {
   std::vector<std::string> names;
@@ -63,7 +50,7 @@ StageFit run_stage(const StageDefinition& stage, LawParameters<double>& law, con
       const auto field = fields(law);
       for (std::size_t k = 0; k < stage.free.size(); ++k)
         *field[parameter_index(stage.free[k])] = fit.solution.x(static_cast<Eigen::Index>(k));
-      inherit_errors(stage, law, found, options.threads, fit);
+      inherit_errors(stage.given, found, law, stage.blocks, options.threads, fit);
       if (stage.judge) stage.judge(fit, law);
       if (stage.profiled && options.profiles) profile_doubtful(problem, options.threads, control, fit);
     }

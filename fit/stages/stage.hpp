@@ -3,7 +3,6 @@
 // errors of what was taken as given, judge, profile (docs/theory/fit.md, section Stages).
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +12,6 @@
 #include "model/parameters.hpp"
 
 namespace grainlaw::fit {
-
-/// A parameter of an earlier stage that a stage takes as given, its misfit moving with it by a known slope.
-struct GivenParameter {
-  std::string name;  ///< of parameter_table()
-  /// d misfit/d parameter of all rows, at the fitted law.
-  std::function<Eigen::VectorXd(const LawParameters<double>& law)> slope;
-};
 
 struct StageDefinition {
   std::string name;               ///< "coordination", "evolution", ...; that of its outcome
@@ -31,8 +23,7 @@ struct StageDefinition {
   double least_nu = 1;  ///< smallest volume fraction of the rows; a free nu_c keeps kNearestJamming below it [-]
   /// Moves the free parameters of the law to where the search begins. Empty: they are there.
   std::function<void(LawParameters<double>& law)> start;
-  std::optional<GivenParameter> given;    ///< whose error it inherits by the slope
-  std::vector<std::string> given_groups;  ///< whose errors it inherits by difference quotients, names up to the dot
+  std::vector<std::string> given;  ///< parameters of earlier stages, or groups of them, whose errors it inherits
   /// Withdraws claims that the data cannot carry; `law` is the fitted one.
   std::function<void(StageFit& fit, const LawParameters<double>& law)> judge;
   std::vector<NamedEstimate> absent;  ///< said of parameters that are not free because the data do not contain them
@@ -46,7 +37,8 @@ inline constexpr double kNearestJamming = 1e-4;  ///< nu - nu_c that the lowest 
 std::vector<std::string> parameters_of(const std::string& group);
 
 /// A stage whose data are missing: all `parameters` not identified, `remedy` as their note.
-StageDefinition left_out(const std::string& name, const std::vector<std::string>& parameters, const std::string& remedy);
+StageDefinition left_out(const std::string& name, const std::vector<std::string>& parameters,
+                         const std::string& remedy);
 
 /// The least-squares problem of the stage with `law` as found so far, as it is solved and as tests differentiate it.
 Problem problem_of(const StageDefinition& stage, LawParameters<double> law, Loss loss = Loss::squares);

@@ -87,24 +87,15 @@ void add_errors(const StageFit& fit, FoundErrors& found) {
   }
 }
 
-void inherit_error(const Eigen::VectorXd& slope, const Eigen::RowVectorXd& influence, double degrees_of_freedom,
-                   StageFit& second) {
-  const Solution& solution = second.solution;
-  if (!solution.defined || influence.squaredNorm() == 0) return;
-  const Eigen::VectorXd moved = solution.weight.cwiseAbs2().cwiseProduct(solution.pull_slope).cwiseProduct(slope);
-  add_response(solution.jacobian.transpose() * moved * influence, Eigen::VectorXd::Constant(1, degrees_of_freedom),
-               second);
-}
-
-void inherit_error(const std::vector<std::string>& groups, const FoundErrors& found, const LawParameters<double>& law,
-                   const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
-                   int threads, StageFit& second) {
+void inherit_errors(const std::vector<std::string>& given, const FoundErrors& found, const LawParameters<double>& law,
+                    const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
+                    int threads, StageFit& second) {
   if (!second.solution.defined || found.influence.cols() == 0) return;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const std::string name = parameter_table()[i].name, group = name.substr(0, name.find('.'));
-    const bool given = std::find(groups.begin(), groups.end(), group) != groups.end();
-    if (given && has_error(found.influence, static_cast<Eigen::Index>(i))) index.push_back(i);
+    const bool takes = std::ranges::any_of(given, [&](const std::string& g) { return g == name || g == group; });
+    if (takes && has_error(found.influence, static_cast<Eigen::Index>(i))) index.push_back(i);
   }
   if (index.empty()) return;
   add_response(gradient_changes(index, found.influence(index, Eigen::all), law, blocks_at, threads, second.solution),

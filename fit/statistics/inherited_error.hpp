@@ -26,16 +26,11 @@ void widen(Eigen::MatrixXd& influence, Eigen::Index packings);
 /// Takes over what a stage says of its parameters in place of what earlier ones said.
 void add_errors(const StageFit& fit, FoundErrors& found);
 
-/// Adds to the errors of `second` what it owes to one given parameter. `slope`: of each row of its misfit, its Jacobian
-/// unchanged; `influence`: of the packings on the parameter. Degrees of freedom: the smaller of its own and
-/// `degrees_of_freedom`. Nothing changes where the given parameter has no error.
-void inherit_error(const Eigen::VectorXd& slope, const Eigen::RowVectorXd& influence, double degrees_of_freedom,
-                   StageFit& second);
-
-/// Likewise to all parameters of `groups`, their names up to the dot, and with the whole change of the gradient by difference
-/// quotients along each packing's influence. `blocks_at(law)`: the blocks of the stage with another law as given.
-void inherit_error(const std::vector<std::string>& groups, const FoundErrors& found, const LawParameters<double>& law,
-                   const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
-                   int threads, StageFit& second);
+/// Adds to the errors of `second` what it owes to the parameters `given`, names or groups (names up to the dot), by the change
+/// of its gradient, in difference quotients along each packing's influence. `blocks_at(law)`: the blocks of the stage with
+/// another law as given. Degrees of freedom: the smallest of its own and theirs. Nothing changes where they have no error.
+void inherit_errors(const std::vector<std::string>& given, const FoundErrors& found, const LawParameters<double>& law,
+                    const std::function<std::vector<ResidualBlock>(const LawParameters<double>&)>& blocks_at,
+                    int threads, StageFit& second);
 
 }  // namespace grainlaw::fit

@@ -199,6 +199,7 @@ inline fit::SizedLaw fit_of_isotropic_laws(const CoverageStudy& study, int k) {
   fit::Calibration found = fit::nothing_known();
   found.law.parameters = truth;
   fit::fit_unloading_laws("F2", series, found, choices, {});
+  fit::fit_overlap_law("F2", series, found, choices, {});
   found.law.covariance = found.errors.covariance();
   return {found.law, fit::size_of(tests)};
 }

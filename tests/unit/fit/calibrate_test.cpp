@@ -123,10 +123,24 @@ TEST(Calibrate, StagesStandInTheirOrder) {
     EXPECT_FALSE(stage.window.empty()) << stage.name;
     EXPECT_EQ(stage.tests.empty(), stage.name == "lode") << stage.name << ": there is no D3";
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"coordination", "rattlers", "pressure", "overlap", "fabric_trace",
-                                             "steady_coordination", "steady_rattlers", "steady_pressure", "shear",
-                                             "stress_ratio_max", "stress_rate", "fabric_max", "fabric_rate",
-                                             "evolution", "lode", "memory"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"coordination", "rattlers", "pressure", "fabric_trace", "steady_coordination",
+                                      "steady_rattlers", "steady_pressure", "shear", "stress_ratio_max", "stress_rate",
+                                      "fabric_max", "fabric_rate", "evolution", "lode", "memory", "overlap"}));
+}
+
+// D of Eq. (13) is that at the nu_c that the law ends with, which the evolution moves after the stage of the pressure.
+TEST(Calibrate, OverlapsReferToTheFinalJammingDensity) {
+  const auto tests = testing::synthetic_dataset(testing::synthetic_truth(), noisy());
+  const Calibration c = calibrate(tests, {}, {});
+  double xx = 0, xd = 0;
+  for (const DensitySeries& series : isotropic_series(check_and_sort(tests), {})) {
+    for (const DensityPoint& p : series.points) {
+      const double x = std::log(p.nu / c.law.parameters.isotropic.pressure.nu_c);
+      xx += x * x, xd += x * p.mean_overlap;
+    }
+  }
+  EXPECT_NEAR(c.law.parameters.overlap_D, xd / xx, 1e-8);
 }
 
 TEST(Calibrate, SingleCouplingKnowsOnlyA0) {

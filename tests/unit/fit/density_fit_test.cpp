@@ -53,7 +53,7 @@ TEST(DensityFit, RecoversTable2FromTheTablesOwnStart) {
   EXPECT_EQ(fits[0].stage.tests.size(), 2u);
   expect_recovered(law.isotropic, truth.isotropic, 1e-9);
 
-  run_stage(overlap_stage(series, "all", law.isotropic.pressure.nu_c), law, {}, {});
+  run_stage(overlap_stage(series, "all"), law, {}, {});
   EXPECT_NEAR(law.overlap_D, truth.overlap_D, 1e-9);
   run_stage(fabric_trace_stage(series, "all"), law, {}, {});
   EXPECT_NEAR(law.fabric_g3, truth.fabric_g3, 1e-12);
@@ -99,7 +99,7 @@ TEST(DensityFit, MissingOverlapsLeaveTheStageOut) {
   auto series = exact_series(published_parameters(), kDensities, 2);
   series[1].points[3].mean_overlap = std::nan("");
   LawParameters<double> law = start_parameters();
-  const StageFit D = run_stage(overlap_stage(series, "all", 0.665), law, {}, {});
+  const StageFit D = run_stage(overlap_stage(series, "all"), law, {}, {});
   EXPECT_EQ(D.stage.termination, "left out");
   EXPECT_EQ(D.stage.estimates.at(0).estimate.status, Status::not_identified);
   EXPECT_NE(D.stage.estimates[0].estimate.note.find("iso-1"), std::string::npos);

@@ -9,7 +9,6 @@ namespace {
 
 constexpr int kRowsOfRun = 20;
 constexpr double kSlope = 3;  // of the second stage's misfit in the first one's parameter
-constexpr double kFour = 4;   // degrees of freedom of five packings
 
 /// Blocks of x[0] + shift - value, one for each run, whose rows all hold its value.
 std::vector<ResidualBlock> blocks_of(const std::vector<double>& values, double shift) {
@@ -36,64 +35,61 @@ StageFit mean_of(const std::string& name, const std::vector<double>& values, dou
 
 double variance(const StageFit& fit) { return std::pow(fit.stage.estimates[0].estimate.standard_error, 2); }
 
+/// What b, the mean of y - slope a, owes to a by the parameters `given` of a law in which D is a.
+void inherit(const StageFit& a, const std::vector<double>& y, double slope, StageFit& b,
+             const std::string& given = "overlap.D") {
+  FoundErrors found = no_errors();
+  add_errors(a, found);
+  LawParameters<double> law = start_parameters();
+  law.overlap_D = a.solution.x(0);
+  inherit_errors(
+      {given}, found, law, [&](const LawParameters<double>& moved) { return blocks_of(y, slope * moved.overlap_D); }, 1,
+      b);
+}
+
 // a is the mean of x, b that of y - 3 a: b = mean(y - 3 x), with the error of a mean of these differences.
 TEST(InheritedError, IsThatOfBothStepsTogether) {
   const std::vector<double> x{1.0, 1.4, 0.7, 1.1, 0.9};
   for (const std::vector<double>& y :
        {std::vector<double>{2, 2, 2, 2, 2}, {2.0, 2.1, 1.8, 2.2, 1.9}, {1.8, 0.9, 2.9, 1.6, 2.4}}) {
-    const StageFit a = mean_of("a", x, 0);
-    StageFit b = mean_of("b", y, kSlope * a.solution.x(0));
-    double mean = 0, expected = 0;
-    for (std::size_t c = 0; c < x.size(); ++c) mean += (y[c] - kSlope * x[c]) / 5;
-    for (std::size_t c = 0; c < x.size(); ++c) expected += std::pow(y[c] - kSlope * x[c] - mean, 2) / (5 * 4);
-    EXPECT_NEAR(b.solution.x(0), mean, 1e-9);
-    inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, kFour, b);
-    EXPECT_NEAR(variance(b), expected, 1e-9 * expected);
-    EXPECT_NEAR(b.covariance()(0, 0), expected, 1e-9 * expected);
-    EXPECT_NEAR(b.stage.estimates[0].estimate.degrees_of_freedom, 4, 1e-9);
+    for (const std::string given : {"overlap.D", "overlap"}) {
+      const StageFit a = mean_of("overlap.D", x, 0);
+      StageFit b = mean_of("b", y, kSlope * a.solution.x(0));
+      double mean = 0, expected = 0;
+      for (std::size_t c = 0; c < x.size(); ++c) mean += (y[c] - kSlope * x[c]) / 5;
+      for (std::size_t c = 0; c < x.size(); ++c) expected += std::pow(y[c] - kSlope * x[c] - mean, 2) / (5 * 4);
+      EXPECT_NEAR(b.solution.x(0), mean, 1e-9);
+      inherit(a, y, kSlope, b, given);
+      EXPECT_NEAR(variance(b), expected, 1e-8 * expected);
+      EXPECT_NEAR(b.covariance()(0, 0), expected, 1e-8 * expected);
+      EXPECT_NEAR(b.stage.estimates[0].estimate.degrees_of_freedom, 4, 1e-9);
+    }
   }
 }
 
 TEST(InheritedError, NothingChangesWithoutAnErrorToInherit) {
   const std::vector<double> y{2.0, 2.1, 1.8, 2.2, 1.9};
-  StageFit a = mean_of("a", {1.0, 1.4, 0.7, 1.1, 0.9}, 0), b = mean_of("b", y, 0);
+  StageFit a = mean_of("overlap.D", {1.0, 1.4, 0.7, 1.1, 0.9}, 0), b = mean_of("b", y, 0);
   const double before = variance(b);
-  inherit_error(Eigen::VectorXd::Zero(5 * kRowsOfRun), a.influence, kFour, b);
+  inherit(a, y, 0, b);
   EXPECT_EQ(variance(b), before) << "no slope";
-  a.mark_not_identified("a", "for the test");
-  inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, kFour, b);
+  inherit(a, y, kSlope, b, "fabric");
+  EXPECT_EQ(variance(b), before) << "not given";
+  a.mark_not_identified("overlap.D", "for the test");
+  inherit(a, y, kSlope, b);
   EXPECT_EQ(variance(b), before) << "not identified";
 }
 
 TEST(InheritedError, TheFewerPackingsDecide) {
-  const StageFit a = mean_of("a", {1.0, 1.4, 0.7}, 0);  // the second stage has five
-  StageFit b = mean_of("b", {2.0, 2.1, 1.8, 2.2, 1.9}, kSlope * a.solution.x(0));
+  const std::vector<double> y{2.0, 2.1, 1.8, 2.2, 1.9};
+  const StageFit a = mean_of("overlap.D", {1.0, 1.4, 0.7}, 0);  // the second stage has five
+  StageFit b = mean_of("b", y, kSlope * a.solution.x(0));
   const Eigen::RowVectorXd own = b.influence.row(0);
-  inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, 2, b);
-  EXPECT_EQ(b.stage.estimates[0].estimate.degrees_of_freedom, 2);
+  inherit(a, y, kSlope, b);
+  EXPECT_NEAR(b.stage.estimates[0].estimate.degrees_of_freedom, 2, 1e-9);
   Eigen::RowVectorXd expected = own;
   expected.head(3) -= kSlope * a.influence.row(0);
-  EXPECT_NEAR((b.influence.row(0) - expected).norm(), 0, 1e-9);
-}
-
-// Slopes by difference quotients: the second stage's blocks with another law as given, here x0 + 3 D - value.
-TEST(InheritedError, SlopesOfALawAreFoundByDifferences) {
-  const std::vector<double> x{1.0, 1.4, 0.7, 1.1, 0.9}, y{1.8, 0.9, 2.9, 1.6, 2.4};
-  const StageFit a = mean_of("overlap.D", x, 0);
-  LawParameters<double> law = start_parameters();
-  law.overlap_D = a.solution.x(0);
-  StageFit by_difference = mean_of("b", y, kSlope * law.overlap_D), by_slope = by_difference;
-  FoundErrors found = no_errors();
-  add_errors(a, found);
-  inherit_error(
-      {"overlap"}, found, law,
-      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, 1, by_difference);
-  inherit_error(Eigen::VectorXd::Constant(5 * kRowsOfRun, kSlope), a.influence, kFour, by_slope);
-  EXPECT_NEAR((by_difference.influence - by_slope.influence).norm(), 0, 1e-8 * by_slope.influence.norm());
-  inherit_error(
-      {"fabric"}, found, law,
-      [&](const LawParameters<double>& given) { return blocks_of(y, kSlope * given.overlap_D); }, 1, by_slope);
-  EXPECT_NEAR((by_difference.influence - by_slope.influence).norm(), 0, 1e-8 * by_slope.influence.norm()) << "no error";
+  EXPECT_NEAR((b.influence.row(0) - expected).norm(), 0, 1e-8);
 }
 
 /// D x0 - value and x0 - 1, one pair for each packing: D moves the Jacobian, too.
@@ -126,7 +122,7 @@ TEST(InheritedError, TheWholeChangeOfTheGradientCounts) {
   StageFit b = fit_stage("b", "", {{{"b", 0.5, -100, 100, 1}}, product_blocks(y, D)}, "", 1, {});
   FoundErrors found = no_errors();
   add_errors(a, found);
-  inherit_error(
+  inherit_errors(
       {"overlap"}, found, law, [&](const LawParameters<double>& given) { return product_blocks(y, given.overlap_D); },
       1, b);
   const double value = b.solution.x(0), mean_y = 4.92, square = D * D + 1, by_D = (mean_y - 2 * D * value) / square;
