@@ -1,5 +1,7 @@
 #include "dem/runs/simulation.hpp"
 
+#include <fmt/format.h>
+
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
 #include "dem/runs/dataset_runs.hpp"
@@ -8,6 +10,7 @@
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
 #include "model/files/series_csv.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::dem {
 namespace {
@@ -70,6 +73,17 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
   return names;
 }
 
+/// Refuses a folder into which the test would write over what it starts from.
+void require_start_survives(const TestFile& test, const fs::path& output) {
+  const std::string name = test.given_file.filename().string();
+  if (name != "end.state" && name != "end.csv" && !name.starts_with("frame-")) return;
+  const fs::path folder = test.given_file.has_parent_path() ? test.given_file.parent_path() : ".";
+  std::error_code absent;
+  if (!fs::equivalent(folder, output, absent)) return;
+  throw InvalidInput(fmt::format("{}: the test starts from it and would overwrite it; give another folder with -o",
+                                 test.given_file.string()));
+}
+
 SimulationResult simulate_into(const TestFile& test, const fs::path& output, const Execution& execution) {
   make_output_folder(output);
   const RunStore store(output, "runs");
@@ -112,6 +126,7 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
 }  // namespace
 
 SimulationResult simulate(const TestFile& test, const fs::path& output, const Execution& execution) {
+  require_start_survives(test, output);
   require_engines({{test, "", Role::validation, test.start == Start::preparation}}, output, execution);
   return without_empty_folders({output}, [&] { return simulate_into(test, output, execution); });
 }

@@ -60,6 +60,10 @@ Start start_from(const Json& document, const std::string& name) {
       throw InvalidInput(fmt::format("{}: {}: belongs to {}; remove it", name, key, what));
   };
   only_with("cell", Start::spheres, "spheres");
+  if (document.contains("relax") && start != Start::spheres && start != Start::state) {
+    throw InvalidInput(
+        fmt::format("{}: relax: belongs to spheres or state, a preparation relaxes what it keeps; remove it", name));
+  }
   only_with("keep", Start::preparation, "a preparation without segments");
   if (document.contains("probes") && start == Start::preparation) {
     throw InvalidInput(fmt::format("{}: probes: belong to a test; give initial, spheres or state", name));
@@ -122,13 +126,14 @@ TestFile test_from_document(const Json& document, const std::filesystem::path& f
   if (made) complete_preparation(preparation, name);
   if (test.start == Start::preparation) return test;
 
-  const auto beside = [&](const char* key) { return folder / document[key].get<std::string>(); };
   if (test.start == Start::spheres) {
-    test.given = read_spheres(beside("spheres"), cell_from(document["cell"]), preparation.packing.material);
-    test.given_digest = sha256(sha256_of_file(beside("spheres")) + document["cell"].dump());
+    test.given_file = folder / document["spheres"].get<std::string>();
+    test.given = read_spheres(test.given_file, cell_from(document["cell"]), preparation.packing.material);
+    test.given_digest = sha256(sha256_of_file(test.given_file) + document["cell"].dump());
   } else if (test.start == Start::state) {
-    test.given = read_state(beside("state"));
-    test.given_digest = sha256_of_file(beside("state"));
+    test.given_file = folder / document["state"].get<std::string>();
+    test.given = read_state(test.given_file);
+    test.given_digest = sha256_of_file(test.given_file);
   }
   if (test.given) check_given(*test.given, preparation, test.relax, name);
   Json path{{"initial", document.value("initial", Json::object())},

@@ -13,6 +13,7 @@ enum class Start { preparation, kept, spheres, state };  ///< `preparation`: no 
 /// Engine and driving of the preparation hold for every start; its seed and kept states are set.
 struct TestFile : TestSetup {
   Start start = Start::preparation;
+  std::filesystem::path given_file = {};  ///< what `given` came from
 };
 
 /// Reads the file and those that it names (relative to its folder). Throws InvalidInput naming file, key or row.

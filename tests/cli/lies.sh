@@ -115,6 +115,18 @@ for key in stiffness density contact_viscosity background_viscosity; do
 done
 echo '{"state": "two/end.state", "mean_radius": 0.002}' >test.json
 refuse 'mean_radius beside a state' 'test.json: mean_radius: belongs to a packing that is made' "$grainlaw" simulate test.json
+echo '{"initial": {"nu": 0.7}, "relax": true, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.1}}]}' >test.json
+refuse 'relax beside initial' 'test.json: relax: belongs to spheres or state' "$grainlaw" simulate test.json
+
+# a test does not write over what it starts from
+echo '{"state": "end.state"}' >two/on.json
+cp two/end.state kept.state
+for folder in two two/.; do
+  ! "$grainlaw" simulate two/on.json -o $folder >stdout 2>stderr || fail "wrote over its start in $folder"
+  grep -q 'two/end.state: the test starts from it and would overwrite it' stderr || fail "$(cat stderr)"
+  cmp two/end.state kept.state || fail "the start has changed"
+done
+(cd two && ! "$grainlaw" simulate on.json -o . 2>../stderr) || fail "wrote over its start in its own folder"
 
 # packings that no simulation can start from
 echo '{"spheres": "s.csv", "cell": [[4e-4,0,0],[0,0.02,0],[0,0,0.02]]}' >test.json
