@@ -96,6 +96,12 @@ TEST(Rehearsals, APathDoesNotSpeakForItself) {
   const Spokesmen others = spokesmen_for(resolve(paths[2].path), paths);
   ASSERT_EQ(others.rehearsals.size(), 4u);
   for (const Rehearsal* other : others.rehearsals) EXPECT_NE(other, &paths[2]);
+  Path again = paths[2].path;  // on a packing that somebody else's program made
+  again.nu += 4e-4;
+  again.segments.front().extent *= 1.005;
+  EXPECT_EQ(spokesmen_for(resolve(again), paths).rehearsals.size(), 4u);
+  again.nu += 4e-3;
+  EXPECT_EQ(spokesmen_for(resolve(again), paths).rehearsals.size(), 5u);
 }
 
 TEST(Rehearsals, SaysInWhichWaysAPathIsOutside) {
