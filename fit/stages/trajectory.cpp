@@ -8,8 +8,6 @@
 namespace grainlaw::fit {
 namespace {
 
-constexpr double kOffTrajectory = 1e-6;  // strain by which a row may miss its segment
-
 /// N of every segment, orthonormalised in order; directions that lie in the span already add nothing.
 std::vector<Deviator<double>> axes_of(const TestRecord& test) {
   std::vector<Deviator<double>> axes;
@@ -21,17 +19,9 @@ std::vector<Deviator<double>> axes_of(const TestRecord& test) {
   return axes;
 }
 
-/// Path parameter of a row from the start of its segment.
+/// Path parameter of a row from the start of its segment; check_and_sort() has seen that it lies on it.
 double parameter_of(const TestRecord& test, std::size_t number, const Eigen::Matrix3d& from, const Eigen::Matrix3d& D) {
-  const Eigen::Matrix3d strain = test.rows[number].strain.tensor - from;
-  const double e = strain.cwiseProduct(D).sum() / D.squaredNorm();
-  if ((strain - e * D).norm() > kOffTrajectory || e < -kOffTrajectory) {
-    throw InvalidInput(
-        fmt::format("test {}: row {} is not on segment {} of its path (off by a strain of {:.2g}); check the "
-                    "strain columns and the path",
-                    test.name, number + 1, test.rows[number].segment, (strain - e * D).norm()));
-  }
-  return e;
+  return (test.rows[number].strain.tensor - from).cwiseProduct(D).sum() / D.squaredNorm();
 }
 
 Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, std::size_t end, double nu_c,
