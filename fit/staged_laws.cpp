@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "fit/data/shear_rows.hpp"
 #include "fit/stages/density_fit.hpp"
 #include "fit/stages/density_law_fit.hpp"
 #include "fit/stages/lode_fit.hpp"

@@ -79,7 +79,8 @@ std::vector<DensitySeries> isotropic_series(const DataSet& data, const Calibrati
 std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const CalibrationOptions& options) {
   std::vector<DensitySeries> all;
   for (const TestRecord* test : data.pure_shear) {
-    if (test->path.segments.front().mode != mode) continue;
+    const PathSegment& shear = test->path.segments.front();
+    if (mode == Mode::D2 ? !is_like_D2(law_direction(shear.direction).lode) : shear.mode != mode) continue;
     DensitySeries series{test->name, packing_of(data, *test), 0, {}};
     std::vector<DensityPoint> steady;
     const double from = steady_onset(*test).from(options.steady_from);

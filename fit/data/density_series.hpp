@@ -36,7 +36,7 @@ std::vector<DensitySeries> unloading_series(const std::vector<const TestRecord*>
 /// Those of the ISO unloading tests. Throws InvalidInput, too, when no four rows are in the window.
 std::vector<DensitySeries> isotropic_series(const DataSet& data, const CalibrationOptions& options);
 
-/// One point per test of `mode` at constant volume: means over eps_dev >= steady_from, or from where the
+/// One point per test at constant volume of `mode`, D2 for all that is like it: means over eps_dev >= steady_from, or from where the
 /// test is steady if that is later. Tests that end before, or are not jammed there, are absent.
 std::vector<DensitySeries> steady_series(const DataSet& data, Mode mode, const CalibrationOptions& options);
 

@@ -22,6 +22,8 @@ LawState<double> measured_state(const TestRecord& test, const Observation& row) 
           deviator<double>(row.fabric.tensor)};
 }
 
+bool is_like_D2(double lode) { return std::abs(lode) < 0.5; }
+
 bool is_jammed(const Observation& row) { return row.P_star > kUnjammedPressure; }
 
 RowWeights shear_window(const std::vector<double>& eps_dev, const CalibrationOptions& options) {

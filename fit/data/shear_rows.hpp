@@ -12,6 +12,9 @@ namespace grainlaw::fit {
 /// A row of a test as the law's state: P*, sigma'* = sigma' 2<r>/k and F' (Eqs. (7), (8), (10)), compression positive.
 LawState<double> measured_state(const TestRecord& test, const Observation& row);
 
+/// l of D2 is 0, that of D3 1.
+bool is_like_D2(double lode);
+
 /// A row with a network that carries. Below, contacts may exist, but P* is less than what any jammed state here has.
 bool is_jammed(const Observation& row);
 

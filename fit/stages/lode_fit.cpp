@@ -1,13 +1,11 @@
 #include "fit/stages/lode_fit.hpp"
 
 #include <algorithm>
-#include <cmath>
 
+#include "fit/data/shear_rows.hpp"
 #include "fit/stages/evolution_fit.hpp"
 
 namespace grainlaw::fit {
-
-bool is_like_D2(double lode) { return std::abs(lode) < 0.5; }
 
 ByLodeAngle by_lode_angle(const std::vector<Trajectory>& trajectories) {
   const bool known = std::ranges::any_of(

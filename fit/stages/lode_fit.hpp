@@ -8,9 +8,6 @@
 
 namespace grainlaw::fit {
 
-/// l of D2 is 0, that of D3 1.
-bool is_like_D2(double lode);
-
 /// Shear at constant volume by its Lode angle.
 struct ByLodeAngle {
   std::vector<Trajectory> others;     ///< unlike D2; none, where no shear at constant volume is like it

@@ -241,8 +241,7 @@ class SeriesCheck {
     }
   }
 
-  /// What the springs of contacts demand of the pressure where nobody counted them: from the row of the least pressure since the
-  /// volume last changed direction, in steps of a hundredth of volume.
+  /// What the springs of contacts demand of the pressure where nobody counted them, in steps of a hundredth of volume.
   void check_stiffness() const {
     std::size_t from = 0, steepest = 0;
     double most = 0;
