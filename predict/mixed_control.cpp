@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kSize = kUnknowns + 7;  // the law's, six strains, shear path
 constexpr double kVanished = 1e-12;           // of the start's P: unjammed
-constexpr double kDecay = 200;                // kappa, per strain: drift is gone after a percent of it
+constexpr double kDecay = 200;                // kappa, per unit of e, a strain: drift is gone after a percent of it
 constexpr int kMostIterations = 60;
 constexpr int kCornerIterations = 3;
 constexpr double kNoReversal = 1e-6;  // of the stress ratio
@@ -265,6 +265,17 @@ ControlledState past_corner(const LawParameters<double>& parameters, Rung rung, 
   return from;
 }
 
+/// `segment` by a path parameter of the size of a strain, whatever unit its rates are given in.
+PathSegment by_strain(PathSegment segment) {
+  double unit = segment.direction.tensor.norm();
+  for (const Condition& condition : segment.conditions) unit = std::max(unit, std::abs(condition.rate));
+  if (!(unit > 0)) return segment;
+  segment.direction.tensor /= unit;
+  segment.spin /= unit;
+  for (Condition& condition : segment.conditions) condition.rate /= unit;
+  return segment;
+}
+
 /// Whether loading ends between corners, by the strain between rows: what has no event here (docs/theory/law.md, Events).
 bool misses_a_reversal(const std::vector<PredictedRow>& rows, int segment) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -291,7 +302,7 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
   prediction.model = rung;
   ControlledState y{start, Eigen::Matrix3d::Zero(), 0};
   for (std::size_t k = 0; k < path.segments.size() && prediction.events.empty(); ++k) {
-    const PathSegment& segment = path.segments[k];
+    const PathSegment segment = by_strain(path.segments[k]);
     const int index = static_cast<int>(k);
     const auto add_row = [&](const ControlledState& at) {
       if (at.nu(path.nu) > kMaxVolumeFraction)

@@ -95,6 +95,27 @@ TEST(MixedControl, RampsFollowTheirRate) {
   expect_figure("mixed.ramp.drift", off, 1e-8);
 }
 
+// What is given per unit of the path parameter may be given per a thousandth or a million of it.
+TEST(MixedControl, TheUnitOfRatesDoesNotMatter) {
+  const auto at = [](double unit) {
+    PathSegment s =
+        segment(Mode::UNI, ExtentKind::eps_dev, 0.05, {{0, Quantity::stress, 0.02 * unit}, {1, Quantity::stress, 0}});
+    s.mode = Mode::tensor;
+    s.direction.tensor = unit * direction_of(Mode::UNI).tensor;
+    return run({0.70, Branch::unloading, {s}}).rows;
+  };
+  const auto rows = at(1);
+  double off = 0;
+  for (const double unit : {1e-12, 1e-4, 1e3, 1e6}) {
+    const auto others = at(unit);
+    ASSERT_EQ(others.size(), rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      off = std::max({off, std::abs(others[i].state.P / rows[i].state.P - 1),
+                      (others[i].strain.tensor - rows[i].strain.tensor).norm()});
+  }
+  expect_figure("mixed.unit_of_rates", off, 1e-9);
+}
+
 TEST(MixedControl, StrainsGivenBackLeadToTheSameStress) {
   // The predicted strain of triaxial compression, row by row, as a strain-controlled path of straight pieces.
   const LawParameters<double> p = testing::coupled_parameters();
