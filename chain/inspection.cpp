@@ -121,6 +121,7 @@ void inspect_path(const fs::path& file, const Company& company, const fs::path& 
     input.new_runs = fitted ? new_runs(input, *company.spec, {}, output) : NewRuns{*company.spec, {}, output};
   seen.holds = {fmt::format("{} from a volume fraction of {:.4g}", counted(input.path.path.segments.size(), "segment"),
                             input.path.path.nu)};
+  for (const std::string& warning : input.path.warnings) seen.holds.push_back("warning: " + warning);
   seen.forecast = forecast(input, execution);
   if (input.new_runs) seen.holds.emplace_back("the runs below are those of predict --dem");
 }

@@ -217,6 +217,7 @@ void add_warnings(const PredictionInput& input, predict::PredictionFolder& conte
   if (!input.model) {
     for (std::string& line : left_out_rungs(input.law)) content.warnings.push_back(std::move(line));
   }
+  content.warnings.insert(content.warnings.end(), input.path.warnings.begin(), input.path.warnings.end());
   if (content.path.branch != Branch::unloading) {
     content.warnings.push_back(fmt::format(
         "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "

@@ -16,8 +16,12 @@ namespace grainlaw {
 namespace {
 
 constexpr double kMaxStrain = 100;
-constexpr double kSameStrain = 1e-14;    // changes of every component up to this are rounding and have no direction
-constexpr double kSameDirection = 1e-9;  // difference of unit directions that are taken for one
+constexpr double kSameStrain = 1e-14;      // changes of every component up to this are rounding and have no direction
+constexpr double kStraight = 2e-5;         // strain by which rows may lie off a segment: five digits
+constexpr std::size_t kMostRows = 1000;    // of a segment that are kept to judge it by
+constexpr double kShort = 0.005;           // strain of segments between which no path of tests turns again and again
+constexpr double kSharp = 0.985;           // cosine of a turn by 10 degrees
+constexpr std::size_t kTooManyTurns = 10;  // sharp ones between short segments
 
 /// Where the six components stand in a row; shears may be absent.
 std::array<std::optional<std::size_t>, 6> strain_columns(const CsvReader& reader) {
@@ -62,7 +66,20 @@ PathSegment segment_of(const Eigen::Matrix3d& step) {
   return segment;
 }
 
-/// A measured strain history: from each row to the next a straight segment.
+/// Whether the straight line from `corner` to `end` passes `rows` in their order.
+bool is_straight(const Eigen::Matrix3d& corner, const std::vector<Eigen::Matrix3d>& rows, const Eigen::Matrix3d& end) {
+  const double length = (end - corner).norm();
+  const Eigen::Matrix3d n = length > 0 ? Eigen::Matrix3d((end - corner) / length) : Eigen::Matrix3d::Zero();
+  double passed = 0;
+  return std::ranges::all_of(rows, [&](const Eigen::Matrix3d& row) {
+    const double along = (row - corner).cwiseProduct(n).sum(), off = (row - corner - along * n).norm();
+    if (off > kStraight || along < passed - kStraight || along > length + kStraight) return false;
+    passed = std::max(passed, along);
+    return true;
+  });
+}
+
+/// A measured strain history as straight segments that pass its rows.
 std::vector<PathSegment> segments_from_csv(const std::filesystem::path& file, double nu) {
   CsvReader reader(file);
   const auto columns = strain_columns(reader);
@@ -70,6 +87,13 @@ std::vector<PathSegment> segments_from_csv(const std::filesystem::path& file, do
   std::vector<double> values;
   std::optional<Eigen::Matrix3d> first;
   Eigen::Matrix3d corner = Eigen::Matrix3d::Zero(), before = corner;  // start of the last segment; the row before
+  std::vector<Eigen::Matrix3d> rows;                                  // since the corner
+  const auto end_segment = [&] {
+    if ((before - corner).cwiseAbs().maxCoeff() <= kSameStrain) return;
+    if (segments.size() == kMaxSegments)
+      reader.refuse("", fmt::format("more than {} changes of direction; smooth or thin the rows", kMaxSegments));
+    segments.push_back(segment_of(before - corner));
+  };
   while (reader.next(values)) {
     const Eigen::Matrix3d strain = strain_of(reader, columns, values);
     if (!first) {
@@ -81,21 +105,36 @@ std::vector<PathSegment> segments_from_csv(const std::filesystem::path& file, do
       reader.refuse("strain_xx", fmt::format("the strain leads to a volume fraction of {:.4g}, beyond {}", here,
                                              kMaxVolumeFraction));
     }
-    const PathSegment step = segment_of(strain - before);
-    const bool goes_on =
-        !segments.empty() && (step.direction.tensor - segments.back().direction.tensor).norm() <= kSameDirection;
-    if (goes_on) {
-      segments.back() = segment_of(strain - corner);
-    } else {
-      if (segments.size() == kMaxSegments)
-        reader.refuse("", fmt::format("more than {} changes of direction; smooth or thin the rows", kMaxSegments));
+    if (!is_straight(corner, rows, strain)) {
+      end_segment();
       corner = before;
-      segments.push_back(step);
+      rows.clear();
     }
+    if (rows.size() == kMostRows) {  // every second one will do
+      for (std::size_t i = 0; i < kMostRows / 2; ++i) rows[i] = rows[2 * i + 1];
+      rows.resize(kMostRows / 2);
+    }
+    rows.push_back(strain);
     before = strain;
   }
+  end_segment();
   if (segments.empty()) reader.refuse("", "the strain never changes; give at least two different rows");
   return segments;
+}
+
+/// What is to be said of a measured history that looks like noise: laws take each of its turns for one of the material.
+std::vector<std::string> warnings_of(const std::vector<PathSegment>& segments) {
+  std::size_t turns = 0;
+  for (std::size_t i = 1; i < segments.size(); ++i) {
+    const PathSegment &a = segments[i - 1], &b = segments[i];
+    turns +=
+        a.direction.tensor.cwiseProduct(b.direction.tensor).sum() < kSharp && std::max(a.extent, b.extent) < kShort;
+  }
+  if (turns < kTooManyTurns || turns < segments.size() / 2) return {};
+  return {fmt::format(
+      "strain_csv turns by more than 10 degrees {} times in {} segments, after strains below {}: if that is noise of a "
+      "measurement, smooth the rows; the law takes each turn for one of the material, and s and F come out too low",
+      turns, segments.size(), kShort)};
 }
 
 /// The path of `document`, its segments written out or measured.
@@ -119,6 +158,7 @@ PathFile path_from_document(const Json& document, const std::filesystem::path& f
   check_schema(document, Schema::path, name);
   PathFile result;
   result.path = path_of(document, folder, name);
+  if (document.contains("strain_csv")) result.warnings = warnings_of(result.path.segments);
   if (document.contains("seeds")) result.seeds = document["seeds"].get<std::vector<std::uint64_t>>();
   if (document.contains("rows")) result.rows = document["rows"].get<int>();
   return result;

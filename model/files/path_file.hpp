@@ -15,12 +15,14 @@ struct PathFile {
   Path path;
   std::vector<std::uint64_t> seeds;  ///< empty: not given
   std::optional<int> rows;           ///< rows of each segment
+  std::vector<std::string> warnings = {};
 };
 
 /// Reads the file and the measured strain history that it may name instead of segments, strain_csv (relative to its
 /// folder). Of that are read the columns strain_xx, strain_yy, strain_zz and, where there are any, strain_yz,
 /// strain_xz, strain_xy (logarithmic, tension positive, counted from the first row); other columns are not read, so
-/// that any series or prediction will do. Rows that go on in one direction become one segment, repeated rows none.
+/// that any series or prediction will do. Rows within 2e-5 of a straight line, in its order, become one segment, repeated ones
+/// none; a warning tells of rows that look like noise.
 /// Throws InvalidInput naming file, key or row, reason and remedy: also fewer than two different rows, a strain that is
 /// missing or absurd, a volume fraction beyond 0.9, more than 10000 segments.
 PathFile read_path(const std::filesystem::path& file);

@@ -201,6 +201,45 @@ TEST_F(PathFiles, MeasuredStrainsBecomeSegments) {
             std::string::npos);
 }
 
+// Few digits make no turns, and what turns within a strain of 1e-4 is kept.
+TEST_F(PathFiles, MeasuredStrainsAreStraightWithinTheirDigits) {
+  const auto path = put("p.json", R"({"initial": {"nu": 0.7}, "strain_csv": "m.csv"})");
+  std::string line = "strain_xx,strain_yy,strain_zz\n", cycles = line, circle = line;
+  for (int i = 0; i <= 3000; ++i) line += fmt::format("{:.5f},{:.5f},{:.5f}\n", 1.3e-5 * i, 0.7e-5 * i, -3.1e-5 * i);
+  const auto straight = resolve(read_path((put("m.csv", line), path)).path);
+  ASSERT_EQ(straight.size(), 1u);
+  EXPECT_NEAR(straight[0].strain(straight[0].length).tensor(2, 2), -0.093, 1e-15);
+
+  for (int i = 0; i <= 60; ++i) cycles += fmt::format("0,0,{}\n", 2e-5 * std::abs((i % 20) - 10));
+  const auto legs = resolve(read_path((put("m.csv", cycles), path)).path);
+  ASSERT_EQ(legs.size(), 6u);
+  for (const StraightSegment& leg : legs) EXPECT_NEAR(leg.length, 2e-4, 4.1e-5);
+
+  for (int i = 0; i <= 2000; ++i)
+    circle += fmt::format("{},0,{}\n", 0.01 * std::cos(0.001 * i) - 0.01, 0.01 * std::sin(0.001 * i));
+  const PathFile smooth = read_path((put("m.csv", circle), path));
+  EXPECT_TRUE(smooth.warnings.empty());
+  EXPECT_LT(smooth.path.segments.size(), 40u);
+  const auto chords = resolve(smooth.path);
+  for (const StraightSegment& chord : chords) {
+    const Eigen::Matrix3d middle = chord.strain(chord.length / 2).tensor;
+    EXPECT_NEAR(std::hypot(middle(0, 0) + 0.01, middle(2, 2)), 0.01, 3e-5);
+  }
+}
+
+TEST_F(PathFiles, NoiseOfMeasuredStrainsIsSaid) {
+  const auto path = put("p.json", R"({"initial": {"nu": 0.7}, "strain_csv": "m.csv"})");
+  const auto warnings = [&](double noise) {
+    std::string rows = "strain_xx,strain_yy,strain_zz\n0,0,0\n";
+    for (int i = 1; i <= 100; ++i)
+      rows += fmt::format("{},0,{}\n", noise * std::sin(3.0 * i * i), -1e-3 * i + noise * std::cos(5.0 * i * i));
+    return read_path((put("m.csv", rows), path)).warnings;
+  };
+  EXPECT_TRUE(warnings(2e-6).empty());
+  ASSERT_EQ(warnings(3e-4).size(), 1u);
+  EXPECT_NE(warnings(3e-4)[0].find("turns by more than 10 degrees"), std::string::npos) << warnings(3e-4)[0];
+}
+
 TEST_F(PathFiles, AreRefusedNamingTheSegment) {
   const auto segment = [&](const std::string& s) {
     return path_refusal(R"({"initial": {"nu": 0.7}, "segments": [)" + s + "]}");
