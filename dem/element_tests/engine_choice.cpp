@@ -18,6 +18,8 @@ void check(const EngineChoice& choice, const EngineOptions& engine, const DriveO
     refuse_if(contacts.rolling_friction != 0, "rolling_friction", why);
     refuse_if(contacts.normal_force != NormalForce::hooke, "normal_force", why);
     refuse_if(contacts.cohesion != 0, "cohesion", why);
+    refuse_if(drive.quasi_static_step > 0 && drive.transport == Transport::wall, "quasi_static_step",
+              "spheres move with the cell; leave transport homogeneous");
     return;
   }
   refuse_if(contacts.rolling_friction > 0 && contacts.friction == 0, "rolling_friction",

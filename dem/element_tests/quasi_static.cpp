@@ -17,8 +17,6 @@ class QuasiStaticStepper : public Stepper {
   QuasiStaticStepper(const std::vector<StraightSegment>& segments, const ElementTestOptions& options,
                      const std::stop_token& stop)
       : segments_(segments), options_(options), for_sums_(options.engine) {
-    if (options.drive.transport == Transport::wall)
-      throw InvalidInput("quasi_static_step: spheres move with the cell; leave transport homogeneous");
     minimising_.stop = stop;  // the run itself reports
     for_sums_.precision = Precision::reference;
     for (const StraightSegment& segment : segments) strain_of_path_ += strain_of(segment);

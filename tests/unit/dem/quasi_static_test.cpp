@@ -166,7 +166,7 @@ TEST(QuasiStatic, SaysWhereMinimisationsStoppedShort) {
 TEST(QuasiStatic, RefusesWhatItCannotDo) {
   AffineScene scene(0.01, 2e-3, 5);
   scene.options.drive.transport = Transport::wall;
-  EXPECT_THROW(scene.run(), InvalidInput);
+  EXPECT_THROW(check(EngineChoice{}, scene.options.engine, scene.options.drive), InvalidInput);
   scene.options.drive.transport = Transport::homogeneous;
   scene.options.drive.quasi_static_step = 1e-14;
   EXPECT_THROW(scene.run(), InvalidInput);

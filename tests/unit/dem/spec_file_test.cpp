@@ -58,7 +58,7 @@ TEST(SpecFile, TestsMayAskForProbes) {
 TEST(SpecFile, ReadsEveryKey) {
   const Spec s = spec(
       R"({"particles": 64, "seeds": [5], "size_width": 2, "mean_radius": 2e-3, "density": 1000, "stiffness": 1e7, "contact_viscosity": 0.5,
-    "background_viscosity": 0.2, "time_step_fraction": 0.05, "skin": 0.2, "strain_rate": 50, "quasi_static_step": 0.002, "driving": "constant", "transport": "wall", "rows": 50,
+    "background_viscosity": 0.2, "time_step_fraction": 0.05, "skin": 0.2, "strain_rate": 50, "driving": "constant", "transport": "wall", "rows": 50,
     "nu_start": 0.65, "nu_max": 0.81, "nu_end": 0.66, "densities": [0.75, 0.7], "keep": [0.72], "coupling": "single", "tests": [{"mode": "D3", "role": "validation"}]})");
   const PreparationOptions& p = s.preparation;
   EXPECT_EQ(p.packing.particles, 64);
@@ -71,7 +71,7 @@ TEST(SpecFile, ReadsEveryKey) {
   EXPECT_EQ(p.engine.time_step_fraction, 0.05);
   EXPECT_EQ(p.engine.skin, 0.2);
   EXPECT_EQ(p.drive.strain_rate, 50);
-  EXPECT_EQ(p.drive.quasi_static_step, 0.002);
+  EXPECT_EQ(spec(R"({"quasi_static_step": 0.002})").preparation.drive.quasi_static_step, 0.002);
   EXPECT_EQ(p.drive.profile, Profile::constant);
   EXPECT_EQ(p.drive.transport, Transport::wall);
   EXPECT_EQ(p.rows, 50);
