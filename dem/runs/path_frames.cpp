@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "dem/element_tests/stepper.hpp"
 #include "dem/files/state_file.hpp"
 #include "model/files/column.hpp"
@@ -52,8 +54,12 @@ StepObserver PathFrames::at_start() {
 StepObserver PathFrames::observer() {
   return [this](Stepper& stepper, int segment, double e) {
     const double length = segments_[static_cast<std::size_t>(segment)].length;
-    const int k = static_cast<int>(places_.size()) - segment * count_;  // of the segment, the next one
-    if (k <= count_ && e >= (k == count_ ? length : length * k / count_)) keep(stepper, segment, e);
+    const auto passed = [&](double at) {  // of count_ equal parts
+      int parts = std::max(0, static_cast<int>(at / length * count_) - 1);
+      while (parts < count_ && at >= (parts + 1 == count_ ? length : length * (parts + 1) / count_)) ++parts;
+      return parts;
+    };
+    if (passed(e) > (places_.back().segment == segment ? passed(places_.back().e) : 0)) keep(stepper, segment, e);
   };
 }
 
