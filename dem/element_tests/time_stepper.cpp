@@ -93,7 +93,7 @@ class TimeStepper : public Stepper {
     if (residual <= options_.stop_energy_residual) return;
     throw Error(fmt::format(
         "energy balance: residual {:.3g} at row {} (segment {}, nu = {:.6g}, step {}) is beyond {}; the results would "
-        "be wrong, give a smaller time_step_fraction than {}",
+        "be wrong, give a smaller time_step_fraction than {}, a smaller strain_rate, or relax the spheres",
         residual, index + 1, segment, row.nu, steps_, options_.stop_energy_residual,
         options_.engine.time_step_fraction));
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
 #include "dem/runs/dataset_runs.hpp"
@@ -43,9 +45,10 @@ OrderedJson reasons_of(const OrderedJson& values) {
   OrderedJson reasons = OrderedJson::object();
   for (const auto& value : values.items()) {
     if (!value.value().is_null()) continue;
-    reasons[value.key()] = value.key() == "C_star"  ? "no sphere has four contacts"
-                           : value.key() == "s_dev" ? "the pressure is not positive"
-                                                    : "it is not defined without spheres in contact";
+    reasons[value.key()] = value.key() == "C_star"            ? "no sphere has four contacts"
+                           : value.key() == "s_dev"           ? "the pressure is not positive"
+                           : value.key() == "energy_residual" ? "LAMMPS tells no energies"
+                                                              : "it is not defined without spheres in contact";
   }
   return reasons;
 }
@@ -73,10 +76,28 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
   return names;
 }
 
+/// Whether a simulation writes files of this name into its folder.
+bool is_result(const std::string& name) {
+  const fs::path file(name);
+  const std::string extension = file.extension().string(), stem = file.stem().string();
+  const auto begins = [&](const char* with) { return stem.starts_with(with); };
+  if (extension == ".state") return stem == "end" || begins("frame-") || begins("loading-") || begins("unloading-");
+  if (extension == ".restart") return begins("loading-") || begins("unloading-");
+  return extension == ".csv" && (stem == "series" || stem == "end" || stem == "frames" || stem == "probes" ||
+                                 stem == "loading" || stem == "unloading");
+}
+
+/// Removes what an earlier test left in the folder: beside the new files it would be taken for theirs.
+void remove_other_results(const fs::path& folder, const std::vector<std::string>& files) {
+  for (const fs::path& entry : entries_of(folder)) {
+    const std::string name = entry.filename().string();
+    if (is_result(name) && std::ranges::find(files, name) == files.end()) fs::remove(entry);
+  }
+}
+
 /// Refuses a folder into which the test would write over what it starts from.
 void require_start_survives(const TestFile& test, const fs::path& output) {
-  const std::string name = test.given_file.filename().string();
-  if (name != "end.state" && name != "end.csv" && !name.starts_with("frame-")) return;
+  if (!is_result(test.given_file.filename().string())) return;
   const fs::path folder = test.given_file.has_parent_path() ? test.given_file.parent_path() : ".";
   std::error_code absent;
   if (!fs::equivalent(folder, output, absent)) return;
@@ -118,6 +139,7 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
   summary["warnings"] = simulation.warnings;
   summary["files"] = files;
   summary["provenance"] = provenance(execution);
+  remove_other_results(output, files);
   write_json(output / "simulation.json", summary);
   for (const std::string& warning : simulation.warnings) execution.watch.log("warning: " + warning);
   return simulation;

@@ -41,6 +41,16 @@ awk -v a="$(pressure path/simulation.json)" -v b="$(pressure result.json)" 'BEGI
 "$grainlaw" simulate spheres.json -o spheres --json --quiet >again.json
 cmp <(grep '"run"' result.json) <(grep '"run"' again.json) || fail "another run"
 
+# frames stand where they belong, also behind a segment of few steps; what another test left in the folder goes
+jq '.frames = 9 | .strain_rate = 50 | .segments = [{mode: "UNI", extent: {eps_dev: 1e-6}}, {mode: "UNI", extent: {eps_dev: 0.01}}]' on.json >frames.json
+"$grainlaw" simulate frames.json -o again --quiet >/dev/null
+awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { sub(/\[.*/, "", $i); c[$i] = i } next }
+  $c["segment"] == 1 { ++n; e[n] = $c["e"] }
+  END { if (n != 9) exit 1; for (i = 1; i <= 9; ++i) if (e[i] < i / 9 * e[9] - 1e-12 || e[i] > (i + 0.5) / 9 * e[9]) exit 1 }' \
+  again/frames.csv || fail "frames: $(cat again/frames.csv)"
+"$grainlaw" simulate on.json -o again --quiet >/dev/null
+cmp <(cd again && ls -- *.state *.csv) <(jq -r '.files[]' again/simulation.json | sort) || fail "left: $(ls again)"
+
 # two spheres that do not touch: what has no value is null, with the reason (hard case D21)
 printf 'id,x,y,z,r,vx,vy,vz\n0,0.001,0.001,0.001,0.001,0,0,0\n1,0.006,0.006,0.006,0.001,0,0,0\n' >apart.csv
 echo '{"spheres": "apart.csv", "cell": [[0.01,0,0],[0,0.01,0],[0,0,0.01]]}' >apart.json
