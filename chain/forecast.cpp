@@ -36,6 +36,12 @@ Forecast forecast_of(const dem::ExpectedCost& cost, double rows, const dem::Prep
   forecast.rate = std::nan("");
   if (work == 0 && rows == 0) return forecast;
   forecast.rate = dem::measured_rate(like, execution.threads, execution.stop);
+  if (!(forecast.rate > 0)) {
+    forecast.rate = forecast.run_seconds = forecast.fit_seconds = std::nan("");
+    forecast.notes.emplace_back(
+        "how long it takes could not be measured: a packing of this kind does not run as it is");
+    return forecast;
+  }
   forecast.run_seconds = work / forecast.rate;
   if (like.choice.is_lammps()) {
     forecast.run_seconds *= kLammps;

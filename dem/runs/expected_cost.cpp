@@ -21,6 +21,7 @@ constexpr double kBytesPerRecord = 2500;       // of run.json
 
 constexpr double kMeasured = 0.4;  // wall time of a measurement [s]
 constexpr std::int64_t kMeasuredSpheres = 10000;
+constexpr double kMeasuredWidth = 10;  // at most
 constexpr std::int64_t kLarge = 8000;  // spheres; an eighth of it is a packing, too
 constexpr int kTiles = 2;
 constexpr double kMeasuredDensity = 0.72;
@@ -48,6 +49,7 @@ double bytes_of(const PlannedRun& run) {
 State dense_packing(const PreparationOptions& like, const EngineOptions& engine, const RunControl& control) {
   PackingOptions packing = like.packing;
   packing.particles = std::min(packing.particles, kMeasuredSpheres);
+  packing.size_width = std::clamp(packing.size_width, 1.0, kMeasuredWidth);
   const bool large = packing.particles >= kLarge;
   if (large) packing.particles /= kTiles * kTiles * kTiles;
   State state = random_gas(packing, like.nu_gas, engine, control);

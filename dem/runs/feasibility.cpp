@@ -55,7 +55,7 @@ void complete_preparation(PreparationOptions& o, const std::string& name) {
   if (!o.nu_end) {
     double lowest = kUnloadTo;
     for (const double nu : o.keep_unloading) lowest = std::min(lowest, nu);
-    o.nu_end = std::max(o.nu_start, lowest);
+    o.nu_end = lowest < o.nu_max ? std::max(o.nu_start, lowest) : o.nu_start;
   }
   // the densest state tells a reader of the branches' series which packing they belong to
   if (o.keep_loading.empty() && o.keep_unloading.empty()) o.keep_loading.push_back(o.nu_max);
