@@ -218,7 +218,14 @@ Exported export_files(const fs::path& source, ExportFormat format, const fs::pat
   const bool tables = format == ExportFormat::npz || format == ExportFormat::csv;
   const std::vector<fs::path> series = tables ? series_of(source) : std::vector<fs::path>{};
   const std::vector<StateSource> states = series.empty() ? states_of(source) : std::vector<StateSource>{};
-  for (const StateSource& state : states) dem::read_state(state.file);  // refused before a folder is made
+  const bool with_forces = tables || format == ExportFormat::vtp || format == ExportFormat::lammps_dump;
+  for (const StateSource& state : states) {  // refused before a folder is made
+    if (dem::read_state(state.file).contacts.friction > 0 && with_forces)
+      throw InvalidInput(
+          fmt::format("{}: was made with friction, whose forces are not in a state; give a format that tells the "
+                      "spheres alone: xyz, lammps-data or vtkhdf",
+                      state.file.string()));
+  }
   std::error_code none_there;
   for (const fs::path& file : series) {
     if (format == ExportFormat::csv && fs::equivalent(file, output / kAllSeries, none_there))

@@ -143,7 +143,18 @@ TestMapping test_from(const Json& document, const Json& json, const std::map<std
     throw InvalidInput(fmt::format(
         "{}: {}", where,
         series.is_null() ? "misses its data; give series or particles" : "has series and particles; give one of them"));
-  if (series.is_null()) return test;
+  if (series.is_null()) {
+    const Json all = document.value("packings", Json::object());
+    for (const auto& item : all.items()) {
+      const bool stand_in = item.value().contains("stress_unit") || item.value().contains("dimensionless");
+      if (stand_in && item.key() == json.value("packing", item.key()))
+        throw InvalidInput(
+            fmt::format("{}: particles have radii of their own; give 'stiffness' in packings.{} in place "
+                        "of stress_unit or dimensionless",
+                        where, one_line(item.key(), 60)));
+    }
+    return test;
+  }
   test.series = series_from(series, mapping.folder);
   if (test.series->decimal == ',' && test.series->delimiter == Delimiter::comma)
     throw InvalidInput(

@@ -24,6 +24,8 @@ ForeignRows read_particle_rows(const Mapping& mapping, const TestMapping& test, 
   if (!particles.contains("stiffness") && test.packing && test.packing->stiffness > 0)
     particles["stiffness"] = test.packing->stiffness;
   const dem::ParticleRequest request = dem::particle_request(particles, mapping.folder, where);
+  if (test.packing && !(test.packing->contacts == ContactModel{}) && !request.contacts)
+    throw InvalidInput(where + ": the packing's contacts are others than k delta; give 'contacts' with the forces");
   dem::ParticleSeries series = dem::read_particles(request, control);
   if (series.sheared) throw InvalidInput(*series.sheared);
 

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/vocabulary/contact_model.hpp"
 #include "model/vocabulary/fields.hpp"
 
 namespace grainlaw::dem {
@@ -39,6 +40,13 @@ void check(const Material& material);
 inline double sphere_mass(const Material& m, double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r * m.density; }
 
 inline double reduced_mass(double m_i, double m_j) { return m_i * m_j / (m_i + m_j); }
+
+/// Elastic force at overlap `delta` of a pair with r_ij = r_i r_j/(r_i + r_j), of a packing of mean radius <r> [N]; > 0 repels.
+///   hooke: k delta,   hertz: k/(2<r>) sqrt(r_ij delta) delta - 4 pi w r_ij
+inline double elastic_force(const Material& m, const ContactModel& c, double mean_radius, double r_ij, double delta) {
+  if (c.normal_force == NormalForce::hooke) return m.stiffness * delta;
+  return m.stiffness / (2 * mean_radius) * std::sqrt(r_ij * delta) * delta - 4 * std::numbers::pi * c.cohesion * r_ij;
+}
 
 /// Duration of a free collision [s]; NaN when the contact is overdamped (it never ends by itself).
 inline double collision_time(const Material& m, double m_ij) {

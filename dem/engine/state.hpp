@@ -33,15 +33,16 @@ struct PassSums {
 struct State {
   Material material;
   Packing packing;
-  std::uint64_t step = 0;     ///< steps since the start of the current run
-  double time = 0;            ///< time since the start of the current run [s]
-  std::uint64_t seed = 0;     ///< key of the counter-based generator the packing came from
+  std::uint64_t step = 0;  ///< steps since the start of the current run
+  double time = 0;         ///< time since the start of the current run [s]
+  std::uint64_t seed = 0;  ///< key of the counter-based generator the packing came from
   Ledger ledger;
-  std::vector<double> ax, ay, az;               ///< accelerations at the current time [m/s^2]; empty: not yet computed
-  PassSums sums;                                ///< at the current time; meaningful when ax is not empty
-  std::vector<double> ref_x, ref_y, ref_z;      ///< fractions at the last rebuild of the list [-]; empty: rebuild first
+  std::vector<double> ax, ay, az;           ///< accelerations at the current time [m/s^2]; empty: not yet computed
+  PassSums sums;                            ///< at the current time; meaningful when ax is not empty
+  std::vector<double> ref_x, ref_y, ref_z;  ///< fractions at the last rebuild of the list [-]; empty: rebuild first
   Eigen::Matrix3d ref_H = Eigen::Matrix3d::Zero();  ///< cell at the last rebuild [m]
-  std::string digest;         ///< SHA-256 (hex) of the resolved spec that made the state; may be empty
+  std::string digest;     ///< SHA-256 (hex) of the resolved spec that made the state; may be empty
+  ContactModel contacts;  ///< what made it; the engine itself knows k delta alone
 };
 
 /// The packing repeated `tiles` times along each edge of its cell, of the same material: large without being prepared

@@ -15,11 +15,17 @@ Snapshot snapshot_of(const State& state, const Eigen::Matrix3d& L) {
   ThreadTeam team(1);
   const auto view =
       view_contacts(state, build_list(state.packing, 0, team), {state.packing.H, L, Transport::homogeneous});
+  const Packing& p = state.packing;
+  const bool plain = state.contacts.normal_force == NormalForce::hooke;
+  const double mean = mean_radius(p);
   for (std::size_t i = 0; i < state.packing.size(); ++i) {
     visit_contacts<false>(view->field, i, [&](const Contact& c) {
       const Eigen::Vector3d n(c.nx, c.ny, c.nz);
+      const double r_ij = p.radius[i] * p.radius[c.j] / (p.radius[i] + p.radius[c.j]),
+                   elastic = elastic_force(state.material, state.contacts, mean, r_ij, c.delta),
+                   force = plain ? c.force : c.force - state.material.stiffness * c.delta + elastic;
       if (c.j > i || (c.j == i && first_of_opposites(n)))
-        snapshot.contacts.push_back({i, c.j, c.distance * n, c.force * n, c.delta});
+        snapshot.contacts.push_back({i, c.j, c.distance * n, force * n, c.delta});
     });
   }
   snapshot.packing = state.packing;

@@ -13,7 +13,7 @@ namespace grainlaw::dem {
 struct SnapshotContact {
   std::size_t i = 0, j = 0;  ///< places in the packing, i <= j
   Eigen::Vector3d branch;    ///< x_i - x_j of the touching images [m]
-  Eigen::Vector3d force;     ///< on i, Eq. (1) [N]
+  Eigen::Vector3d force;     ///< on i along the normal, Eq. (1) or by the state's contacts [N]
   double overlap = 0;        ///< [m]
 };
 

@@ -1,5 +1,6 @@
 #include "dem/files/state_file.hpp"
 
+#include "model/files/fields_json.hpp"
 #include "model/files/whole_number.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -29,13 +30,15 @@ void for_each_number(AnyState& s, const Scalar& visit, const Array& array, const
 }  // namespace
 
 nlohmann::json state_header(const State& state) {
-  return {{"format", "grainlaw state"},
-          {"particles", state.packing.size()},
-          {"step", state.step},
-          {"seed", state.seed},
-          {"digest", state.digest},
-          {"has_accelerations", !state.ax.empty()},
-          {"has_list_reference", !state.ref_x.empty()}};
+  nlohmann::json header{{"format", "grainlaw state"},
+                        {"particles", state.packing.size()},
+                        {"step", state.step},
+                        {"seed", state.seed},
+                        {"digest", state.digest},
+                        {"has_accelerations", !state.ax.empty()},
+                        {"has_list_reference", !state.ref_x.empty()}};
+  header.update(nlohmann::json(changed_fields(state.contacts)));
+  return header;
 }
 
 void put_state(const State& state, NumberWriter& numbers) {
@@ -63,6 +66,7 @@ State take_state(const nlohmann::json& header, NumberReader& numbers) {
   state.step = whole_number<std::uint64_t>(header.at("step"));
   state.seed = whole_number<std::uint64_t>(header.at("seed"));
   state.digest = header.at("digest").get<std::string>();
+  read_given_fields(header, state.contacts);
   const auto n = whole_number<std::uint64_t>(header.at("particles"));
   const bool accelerations = header.at("has_accelerations").get<bool>();
   const bool reference = header.at("has_list_reference").get<bool>();

@@ -189,10 +189,18 @@ ParticleRequest particle_request(const Json& json, const fs::path& folder, const
     request.times = json["times"].get<std::vector<double>>();
     for (double& time : request.times) time *= request.time;
   }
-  if (request.format == ParticleFormat::state && std::isnan(request.stiffness)) {
-    const Material material = read_state(request.files.front()).material;
+  if (request.format == ParticleFormat::state) {
+    const State state = read_state(request.files.front());
+    const Material& material = state.material;
+    if (!std::isnan(request.stiffness) && std::abs(request.stiffness / material.stiffness - 1) > 1e-9)
+      throw InvalidInput(fmt::format("{}: stiffness: is {} but {} was made with {}; remove the key", where,
+                                     request.stiffness, request.files.front().string(), material.stiffness));
+    if (!(state.contacts == ContactModel{}) && !request.contacts)
+      throw InvalidInput(
+          fmt::format("{}: {} was made with other contacts than k delta; give 'contacts' with the forces", where,
+                      request.files.front().string()));
     request.stiffness = material.stiffness;
-    request.density = material.density;
+    if (std::isnan(request.density)) request.density = material.density;
     if (!request.contacts && !json.contains("contact_viscosity"))
       request.contact_viscosity = material.contact_viscosity;
   }

@@ -52,11 +52,6 @@ std::string head(const std::string& read, const DeckSpheres& s) {
 
 }  // namespace
 
-double elastic_force(const DeckSpheres& s, double r_ij, double delta) {
-  if (s.contacts.normal_force == NormalForce::hooke) return s.material.stiffness * delta;
-  return hertz_stiffness(s) * std::sqrt(r_ij * delta) * delta - 4 * std::numbers::pi * s.contacts.cohesion * r_ij;
-}
-
 std::string deck_of_data(const std::string& file, const DeckSpheres& spheres) {
   return head(fmt::format("read_data {}\n", file), spheres);
 }

@@ -26,9 +26,6 @@ struct DeckSpheres {
   double mean_radius = 0;  ///< <r> of the packing [m]
 };
 
-/// Elastic normal force at overlap `delta` of a pair with this r_ij [N]; > 0 repels.
-double elastic_force(const DeckSpheres& spheres, double r_ij, double delta);
-
 /// Reads `file`, a data file (at step 0) or a restart file (`fresh`: its counter of steps begins anew), and declares contacts and
 /// motion.
 std::string deck_of_data(const std::string& file, const DeckSpheres& spheres);

@@ -52,7 +52,8 @@ void weigh(const Frame& frame, const DeckSpheres& spheres, Look& look) {
     const double distance = c.branch.norm(), reach = p.radius[i] + p.radius[j];
     const Eigen::Vector3d n = c.branch / distance;
     const Eigen::Vector3d v(p.vx[i] - p.vx[j], p.vy[i] - p.vy[j], p.vz[i] - p.vz[j]);
-    const double expected = elastic_force(spheres, p.radius[i] * p.radius[j] / reach, reach - distance) -
+    const double expected = elastic_force(spheres.material, spheres.contacts, spheres.mean_radius,
+                                          p.radius[i] * p.radius[j] / reach, reach - distance) -
                             spheres.material.contact_viscosity * v.dot(n);
     net[i] += c.force;
     net[j] -= c.force;

@@ -39,8 +39,8 @@ OrderedJson packing_to_json(const State& state, std::optional<double> size_width
                                     state.material.stiffness});
 }
 
-PreparationFolder::PreparationFolder(std::filesystem::path folder, std::string key)
-    : folder_(std::move(folder)), key_(std::move(key)) {
+PreparationFolder::PreparationFolder(std::filesystem::path folder, std::string key, const ContactModel& contacts)
+    : folder_(std::move(folder)), key_(std::move(key)), contacts_(contacts) {
   progress_["states"] = OrderedJson::array();
   progress_["warnings"] = OrderedJson::array();
   progress_["files"] = OrderedJson::object();
@@ -87,6 +87,7 @@ OrderedJson PreparationFolder::packing(const PackingOptions& options) const {
 void PreparationFolder::keep(const KeptState& kept) {
   State state = kept.state;
   state.digest = key_;
+  state.contacts = contacts_;
   const std::string file = kept_file(kept.branch, kept.nu);
   write_state(folder_ / file, state);
   progress_["states"].push_back({{"branch", to_string(kept.branch)},

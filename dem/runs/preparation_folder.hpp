@@ -22,7 +22,7 @@ OrderedJson packing_to_json(const State& state, std::optional<double> size_width
 class PreparationFolder {
  public:
   /// `key` is that of the run; kept states carry it.
-  PreparationFolder(std::filesystem::path folder, std::string key);
+  PreparationFolder(std::filesystem::path folder, std::string key, const ContactModel& contacts);
 
   /// Reads progress.json; false when it or a file that it names is missing or damaged.
   bool take_up();
@@ -43,6 +43,7 @@ class PreparationFolder {
 
   std::filesystem::path folder_;
   std::string key_;
+  ContactModel contacts_;  // of the kept states
   OrderedJson progress_ = OrderedJson::object();
 };
 

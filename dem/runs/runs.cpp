@@ -176,7 +176,7 @@ Json ensure_preparation(const RunStore& store, const PreparationOptions& options
   const Stopwatch stopwatch;
   const fs::path run = policy.resume ? store.reopen(key) : store.begin(key);
   const CheckpointFiles checkpoints(run, key, policy);
-  PreparationFolder folder(run, key);
+  PreparationFolder folder(run, key, options.choice.contacts);
   auto checkpoint = checkpoints.load();
   if (!can_go_on(run, checkpoint, options.choice, policy)) checkpoint.reset();
   if (checkpoint && !folder.take_up()) {
@@ -261,6 +261,7 @@ Json ensure_test(const RunStore& store, const TestSetup& test, const ResumePolic
   }
   State end = done.end;
   end.digest = key;
+  end.contacts = o.choice.contacts;
   write_state(folder / "end.state", end);
   if (frames) {
     frames->write_places();

@@ -92,12 +92,23 @@ void check_given(const State& given, const PreparationOptions& options, bool rel
     if (relaxed && options.choice.contacts.normal_force != NormalForce::hooke)
       throw InvalidInput(
           "relax: is done by k delta, not by the normal_force that is asked for; relax the spheres before");
+    if (!(given.contacts == ContactModel{}) && !(given.contacts == options.choice.contacts))
+      throw InvalidInput(
+          "state: was made with other contacts than the test's; give the same friction, rolling_friction, normal_force "
+          "and cohesion with \"engine\": \"lammps\", or its spheres (end.csv) and 'cell' in place of 'state'");
     check(given.material);
     check_sizes(given.packing);
     check_time_step(engine.time_step_fraction, given.material, lightest_pair(given.packing));
   } catch (const InvalidInput& error) {
     throw InvalidInput(fmt::format("{}: {}", name, error.what()));
   }
+}
+
+/// So that steps and rates are judged by the spheres that are given: smallest radius 2<r>/(w + 1).
+void take_sizes(const State& given, PackingOptions& packing) {
+  packing.material = given.material;
+  packing.mean_radius = mean_radius(given.packing);
+  packing.size_width = 2 * packing.mean_radius / std::ranges::min(given.packing.radius) - 1;
 }
 
 }  // namespace
@@ -135,12 +146,18 @@ TestFile test_from_document(const Json& document, const std::filesystem::path& f
     test.given = read_state(test.given_file);
     test.given_digest = sha256_of_file(test.given_file);
   }
-  if (test.given) check_given(*test.given, preparation, test.relax, name);
+  if (test.given) {
+    check_given(*test.given, preparation, test.relax, name);
+    take_sizes(*test.given, preparation.packing);
+  }
   Json path{{"initial", document.value("initial", Json::object())},
             {"segments", document.value("segments", Json::array())}};
   if (test.given) path["initial"]["nu"] = volume_fraction(test.given->packing);
   test.path = path_from_json(path, name, "", false);
   check_path(test.path, preparation, name);
+  if (preparation.choice.is_lammps() && (test.probes || test.frames > 0))
+    throw InvalidInput(
+        fmt::format("{}: {}: belong to the engine 'grainlaw'; remove them", name, test.probes ? "probes" : "frames"));
   return test;
 }
 

@@ -78,11 +78,16 @@ PackingPicture picture_of(const State& state, int horizontal, int vertical, int 
   picture.force.assign(kRoseBins, 0);
 
   const auto contacts = contacts_at(packing, pairs_within(packing, 0, threads));
+  const auto force_of = [&, mean = mean_radius(packing)](const NetworkContact& c) {
+    if (state.contacts.normal_force == NormalForce::hooke) return c.delta;  // times k
+    const double r_ij = packing.radius[c.i] * packing.radius[c.j] / (packing.radius[c.i] + packing.radius[c.j]);
+    return elastic_force(state.material, state.contacts, mean, r_ij, c.delta);
+  };
   double sum = 0;
-  for (const NetworkContact& c : contacts) sum += c.delta;
+  for (const NetworkContact& c : contacts) sum += force_of(c);
   const double mean = sum / static_cast<double>(contacts.size());
   for (const NetworkContact& c : contacts) {
-    const double force = c.delta / mean;
+    const double force = force_of(c) / mean;
     const double nh = c.n[view.h], nv = c.n[view.v], weight = nh * nh + nv * nv;
     const double angle = std::atan2(nv, nh) / std::numbers::pi + 1;  // of a line: 0 and 1 are one direction
     const int bin = std::min(kRoseBins - 1, static_cast<int>((angle - std::floor(angle)) * kRoseBins));

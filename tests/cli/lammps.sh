@@ -96,6 +96,18 @@ jq 'del(.cohesion) | .friction = 0.2' sticky.json >hertz.json
 "$grainlaw" simulate hertz.json -o hertz --quiet >/dev/null
 awk -v a="$(column sticky/series.csv P_star 1)" -v b="$(column hertz/series.csv P_star 1)" 'BEGIN { exit !(a < 0.97 * b && a > 0.5 * b) }' \
   || fail "P* with and without cohesion: $(column sticky/series.csv P_star 1), $(column hertz/series.csv P_star 1)"
+# what is exported are the forces of these contacts, whose sum is the stress; those of friction are in no state
+"$grainlaw" export sticky/end.state --format csv -o exported >/dev/null
+volume=$(jq '.cell | .[0][0] * .[1][1] * .[2][2]' sticky/simulation.json)
+sum=$(awk -F, 'NR > 1 { s += $3 * $6 + $4 * $7 + $5 * $8 } END { printf "%.12g", s }' exported/end.contacts.csv)
+P=$(for c in xx yy zz; do column sticky/series.csv "stress_$c" 0; done | awk '{ s += $1 } END { printf "%.12g", s }')
+awk -v s="$sum" -v V="$volume" -v P="$P" 'BEGIN { exit !((s / V - P)^2 <= (0.01 * P)^2 && P > 0) }' || fail "stress of exported forces: $sum / $volume, $P"
+! "$grainlaw" export hertz/end.state --format csv -o exported 2>err || fail "forces without friction were exported"
+grep -q 'was made with friction' err || fail "$(cat err)"
+jq 'del(.engine, .normal_force, .cohesion) | .state = "sticky/end.state"' sticky.json >other.json
+! "$grainlaw" simulate other.json -o other 2>err || fail "a state of other contacts was driven by k delta"
+grep -q 'was made with other contacts' err || fail "$(cat err)"
+
 # a LAMMPS that means something else by its commands (here: twice the stiffness) is found out
 cat >liar <<'SH'
 #!/usr/bin/env bash

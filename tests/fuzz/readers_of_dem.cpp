@@ -87,7 +87,7 @@ std::vector<Reader> readers_of_dem(const fs::path& scene) {
        }},
       {"progress", Shape::json, "progress/progress.json",
        [](std::string_view, const fs::path& file) {
-         dem::PreparationFolder folder(file.parent_path(), "key");
+         dem::PreparationFolder folder(file.parent_path(), "key", ContactModel{});
          if (!folder.take_up()) return;
          json_text(folder.packing({}));
          json_text(folder.states());

@@ -308,6 +308,34 @@ TEST_F(PathFiles, TestsStartWhereTheySay) {
   EXPECT_EQ(test.given->packing.size(), 4u);
   const std::string digest = test.given_digest;
   EXPECT_EQ(digest.size(), 64u);
+
+  dem::State hertz = *test.given;
+  hertz.contacts.normal_force = NormalForce::hertz;
+  dem::write_state(folder_ / "a.state", hertz);
+  EXPECT_NE(test_refusal(R"({"state": "a.state", )" + uni + "}").find("was made with other contacts"),
+            std::string::npos);
+  const std::string lammps = R"({"state": "a.state", "engine": "lammps", "normal_force": "hertz", )";
+  EXPECT_EQ(dem::read_test(put("t.json", lammps + uni + "}")).given->contacts.normal_force, NormalForce::hertz);
+  EXPECT_NE(test_refusal(lammps + R"("frames": 3, )" + uni + "}").find("frames: belong to the engine 'grainlaw'"),
+            std::string::npos);
+}
+
+// Steps are those of what is given: a metre is as good as a millimetre.
+TEST_F(PathFiles, GivenSpheresAreJudgedByTheirOwnSize) {
+  const auto work_of = [&](double size, double rate) {
+    put("s.csv", fmt::format("id,x,y,z,r\n0,{0},{0},{0},{0}\n1,{1},{0},{0},{0}\n", size, 5 * size));
+    const std::string box = fmt::format(R"("cell": [[{0},0,0],[0,{0},0],[0,0,{0}]])", 10 * size);
+    return expected_work(dem::read_test(
+        put("t.json", fmt::format(R"({{"spheres": "s.csv", {}, "strain_rate": {}, "contact_viscosity": 0, "segments": [
+            {{"mode": "UNI", "extent": {{"eps_dev": 0.1}}}}]}})",
+                                  box, rate))));
+  };
+  // a collision takes as long as the root of the mass
+  EXPECT_NEAR(work_of(1, 100 / std::pow(1e3, 1.5)) / work_of(1e-3, 100), 1, 1e-3);
+}
+
+TEST_F(PathFiles, LoosePreparationsEndWhereTheyBegin) {
+  EXPECT_EQ(dem::read_test(put("t.json", R"({"nu_start": 0.6, "nu_max": 0.65})")).preparation.nu_end, 0.6);
 }
 
 // What a packing that is given is made of stands in what gives it; a key that nobody reads must not look as if it were.

@@ -8,8 +8,10 @@
 #include <limits>
 
 #include "chain/import/quantity.hpp"
+#include "dem/files/state_file.hpp"
 #include "model/files/column.hpp"
 #include "model/files/series_csv.hpp"
+#include "tests/support/dem_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace grainlaw::chain {
@@ -274,6 +276,26 @@ TEST_F(Import, RefusesWhatBecomesInfinite) {
   EXPECT_NE(message.find("E_kin becomes infinite"), std::string::npos) << message;
 }
 
+// Forces of other contacts than k delta stand in no state, and a stand-in for the stiffness is none.
+TEST_F(Import, ParticlesWithoutForcesAreThoseOfPlainContacts) {
+  dem::scene::Draw draw(5);
+  dem::State state = dem::scene::random_state(100, 3, 0.7, Eigen::Matrix3d::Identity(), draw);
+  const auto why = [&](const std::string& packing) {
+    dem::write_state(folder_ / "a.state", state);
+    return testing::refusal([&] {
+      imported_by(
+          fmt::format(R"({{"source": "us", "packings": {{"A": {{"particles": 100 {}}}}}, "tests": [{{"name": "t",
+          "role": "calibration", "particles": {{"format": "state", "files": ["a.state"]}}}}]}})",
+                      packing));
+    });
+  };
+  EXPECT_NE(why(R"(, "stress_unit": 1e9)").find("give 'stiffness' in packings.A"), std::string::npos);
+  EXPECT_NE(why(R"(, "stiffness": 1e7)").find("stiffness: is 10000000 but"), std::string::npos);
+  EXPECT_NE(why(R"(, "normal_force": "hertz")").find("give 'contacts' with the forces"), std::string::npos);
+  state.contacts.friction = 0.1;
+  EXPECT_NE(why("").find("was made with other contacts than k delta"), std::string::npos);
+}
+
 TEST_F(Import, NeedsUnitsOfStressUnlessItHasNone) {
   std::string table = "p nu\n";
   for (int i = 0; i <= 10; ++i) table += fmt::format("{:.17g} {:.17g}\n", 0.002 + 0.005 * i, 0.67 + 0.008 * i);
@@ -313,69 +335,6 @@ TEST_F(Import, SuspectsUnitsThatDifferBetweenTests) {
   for (Observation& row : tests[2].record.rows) row.P_star /= 1000;
   ASSERT_EQ(suspicions(tests).size(), 1u);
   EXPECT_NE(suspicions(tests)[0].find("test D2-0.75-s1 starts at P* = "), std::string::npos);
-}
-
-TEST(Quantity, IsGuessedFromCommonNames) {
-  for (const auto& [name, quantity] : {std::pair{"sigma_xx", "stress_xx"},
-                                       {"sxx", "stress_xx"},
-                                       {"S12", "stress_xy"},
-                                       {"σxx", "stress_xx"},
-                                       {"stress_yz", "stress_yz"},
-                                       {"s_zy", "stress_yz"},
-                                       {"p", "p"},
-                                       {"q", "q"},
-                                       {"e_a", "eps_a"},
-                                       {"eps_v", "eps_v"},
-                                       {"void ratio", "void_ratio"},
-                                       {"e", "void_ratio"},
-                                       {"nu", "nu"},
-                                       {"Fxx", "fabric_xx"},
-                                       {"e_xx", "strain_xx"},
-                                       {"Lx", "Lx"},
-                                       {"C*", "C_star"}}) {
-    const Quantity* is = guessed(name);
-    ASSERT_NE(is, nullptr) << name;
-    EXPECT_EQ(is->name, quantity) << name;
-  }
-  for (const char* name : {"E", "P", "Q", "step", "x", "Z", "ec"}) EXPECT_EQ(guessed(name), nullptr) << name;
-  for (const auto& [title, name, unit] :
-       {std::tuple{"sxx[kPa]", "sxx", "kPa"}, {"sxx (kPa)", "sxx", "kPa"}, {"sxx_kPa", "sxx", "kPa"}}) {
-    EXPECT_EQ(parted(title).name, name);
-    EXPECT_EQ(parted(title).unit, unit);
-  }
-  EXPECT_EQ(parted("eps_s").unit, std::nullopt);
-}
-
-/// By their definitions (SI Brochure, 9th edition: tables 4, 7 and 8): each in terms of another.
-TEST(Quantity, UnitsKeepTheirRatios) {
-  const auto ratio = [](UnitKind kind, const std::string& unit, const std::string& other) {
-    return factor_of(kind, unit).value() / factor_of(kind, other).value();
-  };
-  using enum UnitKind;
-  for (const auto& [kind, unit, other, expected] : {std::tuple{stress, "kPa", "Pa", 1e3},
-                                                    {stress, "MPa", "kPa", 1e3},
-                                                    {stress, "GPa", "MPa", 1e3},
-                                                    {stress, "bar", "kPa", 1e2},
-                                                    {stress, "bar", "hPa", 1e3},
-                                                    {stress, "N/m^2", "Pa", 1},
-                                                    {stress, "N/mm^2", "MPa", 1},
-                                                    {strain, "-", "%", 1e2},
-                                                    {strain, "%", "mm/m", 1e1},
-                                                    {strain, "m/m", "-", 1},
-                                                    {number, "-", "%", 1e2},
-                                                    {length, "m", "cm", 1e2},
-                                                    {length, "cm", "mm", 1e1},
-                                                    {length, "mm", "um", 1e3},
-                                                    {length, "um", "µm", 1},
-                                                    {time, "s", "ms", 1e3},
-                                                    {time, "ms", "us", 1e3},
-                                                    {time, "min", "s", 60},
-                                                    {time, "h", "min", 60}}) {
-    EXPECT_DOUBLE_EQ(ratio(kind, unit, other), expected) << unit << " / " << other;
-  }
-  for (const auto& [kind, unit] : {std::pair{stress, "Pa"}, {strain, "-"}, {number, "-"}, {length, "m"}, {time, "s"}})
-    EXPECT_EQ(factor_of(kind, unit), 1) << unit;
-  EXPECT_EQ(factor_of(stress, "%"), std::nullopt);
 }
 
 }  // namespace

@@ -45,5 +45,18 @@ TEST(ContactLaw, OverdampedContactHasNoCollisionTime) {
   EXPECT_TRUE(std::isnan(collision_time({2000, 1e8, 1.01 * critical, 0}, m_ij)));
 }
 
+TEST(ContactLaw, ElasticForces) {
+  const Material m;
+  ContactModel contacts;
+  const double r = 1e-3, r_ij = 0.5e-3, delta = 1e-5, K = m.stiffness / (2 * r);
+  const auto force = [&] { return elastic_force(m, contacts, r, r_ij, delta); };
+  EXPECT_DOUBLE_EQ(force(), m.stiffness * delta);
+  contacts.normal_force = NormalForce::hertz;
+  EXPECT_NEAR(force(), K * std::sqrt(r_ij) * std::pow(delta, 1.5), 1e-9);
+  const double without = force();
+  contacts.cohesion = 3;
+  EXPECT_NEAR(force(), without - 4 * std::numbers::pi * 3 * r_ij, 1e-9);
+}
+
 }  // namespace
 }  // namespace grainlaw::dem

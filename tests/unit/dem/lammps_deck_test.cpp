@@ -27,17 +27,6 @@ Drive drive_of(Mode mode, Profile profile) {
   return make_drive(segments[0], options, 0.02 * Eigen::Matrix3d::Identity());
 }
 
-TEST(LammpsDeck, ElasticForces) {
-  DeckSpheres s = spheres();
-  const double r_ij = 0.5e-3, delta = 1e-5, K = s.material.stiffness / (2 * s.mean_radius);
-  EXPECT_DOUBLE_EQ(elastic_force(s, r_ij, delta), s.material.stiffness * delta);
-  s.contacts.normal_force = NormalForce::hertz;
-  EXPECT_NEAR(elastic_force(s, r_ij, delta), K * std::sqrt(r_ij) * std::pow(delta, 1.5), 1e-9);
-  const double without = elastic_force(s, r_ij, delta);
-  s.contacts.cohesion = 3;
-  EXPECT_NEAR(elastic_force(s, r_ij, delta), without - 4 * kPi * 3 * r_ij, 1e-9);
-}
-
 TEST(LammpsDeck, ContactsAreOneLine) {
   DeckSpheres s = spheres();
   EXPECT_TRUE(

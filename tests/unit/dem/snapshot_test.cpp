@@ -27,6 +27,21 @@ TEST(Snapshot, HasEveryContactOnce) {
   }
 }
 
+// A state says what contacts made it: their forces, and not k delta, are what is written.
+TEST(Snapshot, ForcesAreThoseOfTheStatesContacts) {
+  scene::Draw draw(3);
+  State state = scene::random_state(300, 3, 0.8, scene::random_shape(1.5, 0.6, draw), draw);
+  state.contacts.normal_force = NormalForce::hertz;
+  const Snapshot snapshot = snapshot_of(state, Eigen::Matrix3d::Zero());
+  ASSERT_FALSE(snapshot.contacts.empty());
+  for (const SnapshotContact& c : snapshot.contacts) {
+    const double a = state.packing.radius[c.i], b = state.packing.radius[c.j];
+    const double hertz = state.material.stiffness / (2 * mean_radius(state.packing)) * std::sqrt(a * b / (a + b)) *
+                         std::pow(c.overlap, 1.5);
+    EXPECT_NEAR(c.force.dot(c.branch) / c.branch.norm(), hertz, 1e-9 * hertz);
+  }
+}
+
 // Pieces lie in the cell, follow one another from x_i, and together are the branch vector.
 TEST(Snapshot, PiecesMakeTheBranch) {
   scene::Draw draw(4);

@@ -132,6 +132,13 @@ TEST_F(StateFile, ReadsBackBitForBit) {
   EXPECT_EQ(files_in_folder(), 1u) << "a temporary file was left";
 }
 
+TEST_F(StateFile, SaysWhatContactsMadeIt) {
+  State state = distinct_state(2, false);
+  state.contacts = {0.3, 0.1, NormalForce::hertz, 0.5};
+  write_state(file_, state);
+  EXPECT_EQ(read_state(file_).contacts, state.contacts);
+}
+
 // Writing and reading share their order: only the bytes show that it is the documented one.
 TEST_F(StateFile, NumbersStandInTheDocumentedOrder) {
   const State s = distinct_state(2, true);
