@@ -1,6 +1,7 @@
 #pragma once
 // A state on disk: the file of a kept state, and the state as part of a checkpoint (dem/files/sealed_file.hpp).
-//   header: particles, step, seed, digest, has_accelerations, has_list_reference
+//   header: particles, step, seed, digest, has_accelerations, has_list_reference; friction, rolling_friction, normal_force,
+//   cohesion where they are not 0 or hooke
 //   numbers: material, time, ledger, sums, H and ref_H by rows; radius, mass, s, v; a (if has_accelerations) and
 //   reference fractions (if has_list_reference), each array whole; ids. SI units, in the order of dem/engine/state.hpp.
 

@@ -133,6 +133,7 @@ TestFile test_from_document(const Json& document, const std::filesystem::path& f
   if (document.contains("keep")) {
     for (const Json& kept : document["keep"]) keep(kept);
   }
+  for (auto* densities : {&preparation.keep_loading, &preparation.keep_unloading}) std::ranges::sort(*densities);
   const bool made = test.start == Start::preparation || test.start == Start::kept;
   if (made) complete_preparation(preparation, name);
   if (test.start == Start::preparation) return test;
