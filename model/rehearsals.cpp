@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace grainlaw {
@@ -66,10 +67,23 @@ const RehearsedQuantity& RehearsedRung::of(Rehearsed quantity) const {
   return quantity == Rehearsed::P_star ? P_star : quantity == Rehearsed::s_par ? s_par : F_par;
 }
 
+bool same_but_axes(const std::vector<StraightSegment>& a, std::vector<StraightSegment> b) {
+  std::array<int, 3> axes{0, 1, 2};
+  const std::vector<StraightSegment> given = b;
+  do {
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      b[i].direction.tensor = given[i].direction.tensor(axes, axes);
+      b[i].spin = given[i].spin(axes, axes);
+    }
+    if (same_path(a, b)) return true;
+  } while (std::ranges::next_permutation(axes).found);
+  return false;
+}
+
 Spokesmen spokesmen_for(const std::vector<StraightSegment>& path, const std::vector<Rehearsal>& rehearsals) {
   Spokesmen all{kind_of(traits_of(path)), false, {}}, alike{all.kind, true, {}};
   for (const Rehearsal& rehearsal : rehearsals) {
-    if (same_path(resolve(rehearsal.path), path)) continue;
+    if (same_but_axes(resolve(rehearsal.path), path)) continue;
     all.rehearsals.push_back(&rehearsal);
     if (rehearsal.kind == all.kind) alike.rehearsals.push_back(&rehearsal);
   }

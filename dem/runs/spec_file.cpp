@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "dem/runs/feasibility.hpp"
@@ -83,7 +82,12 @@ bool may_share_a_run(Role a, Role b) {
 /// Paths that can be followed, names that differ, runs that end and are not both fitted and judged.
 void check_tests(const Spec& spec, const std::string& name) {
   std::set<std::string> names;
-  std::multimap<std::string, std::size_t> tests_along;  // of each path
+  struct Run {
+    Branch branch;
+    std::vector<StraightSegment> path;
+    std::size_t test;
+  };
+  std::vector<Run> runs;
   for (std::size_t i = 0; i < spec.tests.size(); ++i) {
     const TestRequest& test = spec.tests[i];
     const std::vector<double> starts = test.mode == "ISO" ? std::vector<double>{0} : test.densities;
@@ -93,18 +97,17 @@ void check_tests(const Spec& spec, const std::string& name) {
             "{}: tests[{}].name: '{}' is the name of an earlier test; give one of them another", name, i, test.name));
       }
       const Path path = path_of(test, nu, spec);
-      const std::string key = path_to_json(path).dump();
-      for (auto [at, end] = tests_along.equal_range(key); at != end; ++at) {
-        const Role other = spec.tests[at->second].role;
-        if (may_share_a_run(test.role, other)) continue;
+      if (test.mode != "ISO") check_path(path, spec.preparation, fmt::format("{}: tests[{}]: at nu = {}", name, i, nu));
+      const std::vector<StraightSegment> along = resolve(path);
+      for (const Run& run : runs) {
+        const Role other = spec.tests[run.test].role;
+        if (may_share_a_run(test.role, other) || run.branch != path.branch || !same_path(run.path, along)) continue;
         throw InvalidInput(fmt::format(
             "{}: tests[{}]: '{}' ({}) is the run of tests[{}] ({}) on the same packings; what is fitted is "
             "fitted once and judges nothing, remove one or give it another path",
-            name, i, record_name(test, nu, spec.seeds.front()), to_string(test.role), at->second, to_string(other)));
+            name, i, record_name(test, nu, spec.seeds.front()), to_string(test.role), run.test, to_string(other)));
       }
-      tests_along.emplace(key, i);
-      if (test.mode == "ISO") continue;
-      check_path(path, spec.preparation, fmt::format("{}: tests[{}]: at nu = {}", name, i, nu));
+      runs.push_back({path.branch, along, i});
     }
   }
 }

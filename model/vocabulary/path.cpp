@@ -197,15 +197,42 @@ StraightSegment resolve(const PathSegment& segment, std::size_t index, double nu
   return straight;
 }
 
+namespace {
+
+constexpr double kSameLeg = 0.01;  // difference of strains over the larger one, for paths that are one
+
+/// What goes on in one direction, however it is written.
+struct Leg {
+  double nu = 0;
+  Eigen::Matrix3d strain, turn;  // of the whole leg
+
+  bool alike(const Leg& other) const {
+    const double size = kSameLeg * std::max(strain.norm(), other.strain.norm());
+    return (strain - other.strain).norm() <= size && (turn - other.turn).norm() <= size;
+  }
+};
+
+std::vector<Leg> legs_of(const std::vector<StraightSegment>& path) {
+  std::vector<Leg> legs;
+  for (const StraightSegment& segment : path) {
+    const Leg leg{segment.nu_start, segment.length * segment.direction.tensor, segment.length * segment.spin};
+    Leg* before = legs.empty() ? nullptr : &legs.back();
+    const double ratio = before == nullptr ? 0 : leg.strain.norm() / before->strain.norm();
+    if (before != nullptr && leg.alike({leg.nu, ratio * before->strain, ratio * before->turn})) {
+      before->strain += leg.strain;
+      before->turn += leg.turn;
+    } else {
+      legs.push_back(leg);
+    }
+  }
+  return legs;
+}
+
+}  // namespace
+
 bool same_path(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b) {
-  constexpr double kSameLength = 0.01;
-  const auto alike = [](const Eigen::Matrix3d& p, const Eigen::Matrix3d& q) {
-    return (p - q).norm() <= kSameLength * std::max({p.norm(), q.norm(), 1.0});
-  };
-  return std::ranges::equal(a, b, [&](const StraightSegment& p, const StraightSegment& q) {
-    return alike(p.direction.tensor, q.direction.tensor) && alike(p.spin, q.spin) &&
-           std::abs(p.nu_start - q.nu_start) <= kSameDensity &&
-           std::abs(p.length - q.length) <= kSameLength * std::max(p.length, q.length);
+  return std::ranges::equal(legs_of(a), legs_of(b), [](const Leg& p, const Leg& q) {
+    return p.alike(q) && std::abs(p.nu - q.nu) <= kSameDensity;
   });
 }
 

@@ -90,7 +90,7 @@ struct StraightSegment {
 /// Volume fractions that are one: kept states differ by rounding, packings of others by more.
 inline constexpr double kSameDensity = 1e-3;
 
-/// Whether two paths are one, run on different packings: volume fractions within kSameDensity, directions and lengths within 1 %.
+/// Whether two paths are one, however they are written: volume fractions within kSameDensity, strains of legs within 1 %.
 bool same_path(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b);
 
 inline constexpr double kMaxVolumeFraction = 0.9;  ///< beyond it overlaps are no small fraction of the radius any more

@@ -176,6 +176,12 @@ TEST(SpecFile, RefusesToFitAndToJudgeByOneRun) {
   EXPECT_EQ(said("calibration", "validation", "0.72"), "accepted");
   EXPECT_EQ(said("calibration", "description", "0.7"), "accepted") << "by laws of its own";
   EXPECT_EQ(said("validation", "rehearsal", "0.7"), "accepted") << "neither is fitted";
+  EXPECT_NE(spec_refusal(R"({"tests": [{"name": "once", "segments": [{"mode": "D2", "extent": {"eps_dev": 0.2}}], "density": 0.7, "role": "calibration"},
+      {"name": "again", "segments": [{"rate_tensor": [[2,0,0],[0,0,0],[0,0,-2]], "extent": {"target_eps_dev": 0.2}}],
+       "density": 0.7, "role": "rehearsal"}]})")
+                .find("what is fitted is fitted once"),
+            std::string::npos)
+      << "however it is written";
 }
 
 TEST(SpecFile, StepsOfAPreparationFollowFromRatesAndTheShortestCollision) {

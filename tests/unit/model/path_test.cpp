@@ -187,6 +187,30 @@ TEST(Path, FreeDirections) {
   EXPECT_EQ(free_name({0}) + free_name({5}) + free_name({Condition::volume}), "xxxyvolume");
 }
 
+TEST(Path, IsTheSameHoweverItIsWritten) {
+  const auto path = [](std::vector<PathSegment> segments, double nu = 0.7) {
+    return resolve({nu, Branch::unloading, std::move(segments)});
+  };
+  const auto of = [](double unit, double length) {
+    PathSegment s = segment(Mode::D2, ExtentKind::eps_dev, length);
+    s.mode = Mode::tensor;
+    s.direction.tensor *= unit;
+    return s;
+  };
+  const auto D2 = path({segment(Mode::D2, ExtentKind::eps_dev, 0.1)});
+  EXPECT_TRUE(same_path(D2, path({of(2, 0.1)})));
+  EXPECT_TRUE(same_path(D2, path({of(1, 0.03), of(3, 0.07)}))) << "in two parts";
+  EXPECT_TRUE(same_path(D2, path({segment(Mode::D2, ExtentKind::target_eps_dev, 0.1)})));
+  EXPECT_TRUE(same_path(D2, path({of(1, 0.1)}, 0.7004)));
+  EXPECT_FALSE(same_path(D2, path({of(1, 0.1)}, 0.705)));
+  EXPECT_FALSE(same_path(D2, path({of(1, 0.11)})));
+  EXPECT_FALSE(same_path(D2, path({of(1, 0.1), segment(Mode::D2, ExtentKind::eps_dev, 0.1, true)})));
+  EXPECT_FALSE(same_path(D2, path({segment(Mode::D3, ExtentKind::eps_dev, 0.1)})));
+  PathSegment turning = of(1, 0.1);
+  turning.spin << 0, 1, 0, -1, 0, 0, 0, 0, 0;
+  EXPECT_FALSE(same_path(D2, path({turning})));
+}
+
 TEST(Path, NamesOfModesAndBranches) {
   EXPECT_EQ(to_string(Mode::ISO) + to_string(Mode::UNI) + to_string(Mode::D2) + to_string(Mode::D3), "ISOUNID2D3");
   EXPECT_EQ(to_string(Branch::loading), "loading");

@@ -100,6 +100,9 @@ TEST(Rehearsals, APathDoesNotSpeakForItself) {
   again.nu += 4e-4;
   again.segments.front().extent *= 1.005;
   EXPECT_EQ(spokesmen_for(resolve(again), paths).rehearsals.size(), 4u);
+  again.segments.front().direction =
+      StrainRate{Eigen::Matrix3d(again.segments.front().direction.tensor(std::array{2, 0, 1}, std::array{2, 0, 1}))};
+  EXPECT_EQ(spokesmen_for(resolve(again), paths).rehearsals.size(), 4u) << "nor with other names of the axes";
   again.nu += 4e-3;
   EXPECT_EQ(spokesmen_for(resolve(again), paths).rehearsals.size(), 5u);
 }
