@@ -192,7 +192,10 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
   const auto replace_results = [&] {
     writing = dem::lock_results(output, execution);
     remove_results_of_others(output, input.dataset ? "" : json_text(spec));
-    if (input.spec) write_json(output / "spec.resolved.json", spec);
+    if (input.spec)
+      write_json(output / "spec.resolved.json", spec);
+    else
+      fs::remove(output / "spec.resolved.json");
   };
   CalibrationResult result;
   Stopwatch stopwatch;
@@ -204,7 +207,8 @@ CalibrationResult calibrate(CalibrationInput input, const fit::CalibrationOption
     const fs::path folder = make_subfolder(output, "dataset");
     replace_results();
     result.dataset = adopt(*input.dataset, input.dataset_folder, folder);
-    adopt_rehearsals(input.dataset_folder, folder);
+    for (const std::string& aside : adopt_rehearsals(input.dataset_folder, folder))
+      execution.watch.log("warning: a rehearsal of the data set before is put aside as " + aside);
     dem::adopt_pictures(input.dataset_folder, folder);
     log_warnings(result.dataset, execution.watch);
   } else {

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "chain/rehearsals.hpp"
 #include "dem/runs/dataset_runs.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/digest.hpp"
@@ -224,6 +225,11 @@ void add_warnings(const PredictionInput& input, predict::PredictionFolder& conte
         "preparation, are those of that branch",
         to_string(content.path.branch)));
   }
+  if (input.finished_runs && !input.finished_runs->fitted.empty()) {
+    content.warnings.push_back(
+        fmt::format("runs are on packings that were fitted, too (seeds {}): they agree better than new ones would",
+                    fmt::join(input.finished_runs->fitted, ", ")));
+  }
   const auto spins = [](const PathSegment& segment) { return !segment.spin.isZero(0); };
   if (std::ranges::any_of(content.path.segments, spins)) {
     content.warnings.emplace_back(
@@ -322,7 +328,13 @@ FinishedRuns finished_runs(const PredictionInput& input, const fs::path& folder)
   FinishedRuns runs{read_dataset(from), from};
   require_runs_of(input.path.path, runs.dataset, from.string());
   const auto fitted = fitted_dataset(input.law_file, input.law.dataset_digest);
-  if (fitted) require_judges(runs.dataset, *fitted, from.string());
+  if (!fitted) return runs;
+  require_judges(runs.dataset, *fitted, from.string());
+  std::set<std::uint64_t> seeds;
+  for (const DatasetTest& test : runs.dataset.tests) {
+    if (is_fitted(test.record.packing, *fitted)) seeds.insert(test.record.packing.seed);
+  }
+  runs.fitted.assign(seeds.begin(), seeds.end());
   return runs;
 }
 

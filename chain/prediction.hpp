@@ -29,6 +29,7 @@ struct NewRuns {
 struct FinishedRuns {
   Dataset dataset;
   std::filesystem::path folder;
+  std::vector<std::uint64_t> fitted = {};  ///< seeds of packings among them that were fitted, too
 };
 
 struct PredictionInput {

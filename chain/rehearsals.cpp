@@ -15,14 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_fitted(const PackingInfo& packing, const Dataset& dataset) {
-  return std::ranges::any_of(dataset.tests, [&](const DatasetTest& test) {
-    const PackingInfo& other = test.record.packing;
-    return test.record.role == Role::calibration && other.seed == packing.seed &&
-           other.particles == packing.particles && other.mean_radius == packing.mean_radius;
-  });
-}
-
 /// "UNI-0.695" of "UNI-0.695-s11".
 std::string name_of_path(const TestRecord& run) {
   const std::string seed = fmt::format("-s{}", run.packing.seed);
@@ -52,6 +44,14 @@ std::vector<fs::path> rehearsal_folders(const fs::path& folder) {
 }
 
 }  // namespace
+
+bool is_fitted(const PackingInfo& packing, const Dataset& dataset) {
+  return std::ranges::any_of(dataset.tests, [&](const DatasetTest& test) {
+    const PackingInfo& other = test.record.packing;
+    return test.record.role == Role::calibration && other.seed == packing.seed &&
+           other.particles == packing.particles && other.mean_radius == packing.mean_radius;
+  });
+}
 
 std::vector<predict::RehearsalRuns> read_rehearsals(const fs::path& given, const std::string& name,
                                                     const Dataset* dataset) {
@@ -92,12 +92,21 @@ void require_rehearsals_of(const PackingInfo& packing, const fs::path& folder) {
   }
 }
 
-void adopt_rehearsals(const fs::path& from, const fs::path& to) {
+std::vector<std::string> adopt_rehearsals(const fs::path& from, const fs::path& to) {
   std::error_code error;
-  if (fs::equivalent(from, to, error)) return;
+  if (fs::equivalent(from, to, error)) return {};
+  std::vector<std::string> aside;
+  for (const fs::path& each : rehearsal_folders(to)) {
+    if (fs::exists(from / kRehearsalsFolder / each.filename() / "dataset.json")) continue;
+    fs::path place = make_subfolder(to, kRehearsalsOfBefore) / each.filename();
+    while (fs::exists(place)) place += "-";
+    fs::rename(each, place);
+    aside.push_back(place.string());
+  }
   for (const fs::path& each : rehearsal_folders(from)) {
     adopt(read_dataset(each), each, make_subfolder(make_subfolder(to, kRehearsalsFolder), each.filename().string()));
   }
+  return aside;
 }
 
 void rehearse(CalibratedLaw& law, const std::vector<predict::RehearsalRuns>& paths, const Execution& execution) {
@@ -114,24 +123,34 @@ void rehearse(CalibratedLaw& law, const std::vector<predict::RehearsalRuns>& pat
   }
 }
 
-void add_rehearsal(const fs::path& parameters, const fs::path& given, const std::string& name,
-                   const Execution& execution) {
+void check_rehearsal(const CalibratedLaw& law, const Path& path, const std::string& name) {
   if (!is_safe_name(name))
     throw InvalidInput(fmt::format("rehearsal '{}': letters, digits, '.', '-' and '_' make a name", name));
+  for (const Rehearsal& known : law.rehearsals) {
+    const bool same = same_but_axes(resolve(known.path), resolve(path));
+    if (same == (known.name == name)) continue;
+    throw InvalidInput(
+        same ? fmt::format("rehearsal '{}': its path is rehearsed as '{}'; give -o that name to take its place", name,
+                           known.name)
+             : fmt::format("rehearsal '{}': is another path of the law already; give -o another name", name));
+  }
+}
+
+void add_rehearsal(const fs::path& parameters, const fs::path& given, const std::string& name,
+                   const Execution& execution) {
   ParametersFile file = read_parameters(parameters);
   const fs::path beside = parameters.has_parent_path() ? parameters.parent_path() : fs::path(".");
   const std::optional<Dataset> fitted = fitted_dataset(parameters, file.law.dataset_digest);
   const auto paths = read_rehearsals(given, name, fitted ? &*fitted : nullptr);
   if (paths.size() != 1)
     throw InvalidInput(fmt::format("{}: holds runs of {} paths; a rehearsal is one", given.string(), paths.size()));
+  check_rehearsal(file.law, paths.front().runs.front().path, name);
   std::vector<std::string> failures;
   Rehearsal added =
       predict::rehearsal_of(file.law, calibrated_rungs(file.law), paths.front(), {{}, execution.stop}, failures);
   if (added.rungs.empty() && !failures.empty()) throw NotConverged(failures.front());
   for (const std::string& failure : failures) execution.watch.log("warning: " + failure);
-  std::erase_if(file.law.rehearsals, [&](const Rehearsal& known) {
-    return known.name == name || Json(path_to_json(known.path)) == Json(path_to_json(added.path));
-  });
+  std::erase_if(file.law.rehearsals, [&](const Rehearsal& known) { return known.name == name; });
   file.law.rehearsals.push_back(std::move(added));
   if (fitted) {
     const fs::path from = dataset_folder(given);

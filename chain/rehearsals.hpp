@@ -15,6 +15,9 @@ namespace grainlaw::chain {
 
 inline constexpr const char* kRehearsalsFolder = "rehearsals";  ///< beside dataset.json
 
+/// Whether a calibration test of `dataset` was run on the packing.
+bool is_fitted(const PackingInfo& packing, const Dataset& dataset);
+
 /// The rehearsals of `dataset`, which was read in `folder`, by path. Throws InvalidInput for a folder below rehearsals/ whose
 /// data set cannot be read or has a test of role calibration.
 std::vector<predict::RehearsalRuns> rehearsals_of(const Dataset& dataset, const std::filesystem::path& folder);
@@ -28,16 +31,22 @@ void require_rehearsals_of(const PackingInfo& packing, const std::filesystem::pa
 std::vector<predict::RehearsalRuns> read_rehearsals(const std::filesystem::path& given, const std::string& name,
                                                     const Dataset* dataset);
 
-/// Copies the folders rehearsals/NAME from beside one data set to beside another, unless they are the same.
-void adopt_rehearsals(const std::filesystem::path& from, const std::filesystem::path& to);
+inline constexpr const char* kRehearsalsOfBefore = "rehearsals-of-before";  ///< where others' are put aside
+
+/// Copies the folders rehearsals/NAME from beside one data set to beside another, unless they are the same. Others that are there
+/// are of the data set before; they are moved away, and where to is returned.
+std::vector<std::string> adopt_rehearsals(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// Sets `law.rehearsals`: every path by every rung that has its parameters. A path or a rung that fails is left out with a
 /// warning.
 void rehearse(CalibratedLaw& law, const std::vector<predict::RehearsalRuns>& paths, const Execution& execution);
 
+/// Throws InvalidInput where `path` is rehearsed under another name, or the name is that of another path or none.
+void check_rehearsal(const CalibratedLaw& law, const Path& path, const std::string& name);
+
 /// Adds the runs in `given` as one more rehearsal to parameters.json, which is replaced whole, and as a data set to
-/// dataset/rehearsals/`name` beside it, where a new calibration of that data set finds it. The same path, or one of the same
-/// name, is replaced. Throws InvalidInput for runs of several paths, and NotConverged where every rung fails on it.
+/// dataset/rehearsals/`name` beside it, where a new calibration of that data set finds it. The same path of the same name is
+/// replaced. Throws as check_rehearsal(), InvalidInput for runs of several paths, and NotConverged where every rung fails on it.
 void add_rehearsal(const std::filesystem::path& parameters, const std::filesystem::path& given, const std::string& name,
                    const Execution& execution);
 

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "model/files/column.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
+#include "model/files/reading.hpp"
 #include "model/files/schema.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -139,7 +142,17 @@ OrderedJson rung_to_json(const PredictionFolder& content) {
 void write_prediction(const fs::path& folder, const PredictionFolder& content) {
   fs::remove(folder /
              "prediction.json");  // first, and written last: what a kill leaves is no mixture of two predictions
+  fs::remove(folder / "comparison.json");
   OrderedJson curves = OrderedJson::array();
+  std::set<std::string> files;
+  for (const PredictedCurve& curve : content.curves) files.insert(curve.file);
+  for (const fs::path& entry : entries_of(folder)) {  // curves of the prediction that was here
+    const std::string name = entry.filename().string();
+    const bool is_curve = std::ranges::any_of(kValues<Rung>, [&](Rung rung) {
+      return name.starts_with(to_string(rung) + "-law") || name.starts_with(to_string(rung) + "-measured");
+    });
+    if (is_curve && entry.extension() == ".csv" && !files.contains(name)) fs::remove(entry);
+  }
   for (const PredictedCurve& curve : content.curves) {
     write_prediction_series(folder / curve.file, curve.prediction.rows);
     curves.push_back(curve_to_json(curve));

@@ -29,11 +29,14 @@ struct PredictOptions {
   bool dry_run = false;
 };
 
+std::string name_of(const PredictOptions& options) {
+  return (options.output.has_filename() ? options.output : options.output.parent_path()).filename().string();
+}
+
 /// Adds the runs in `folder` to the law's rehearsals, also to the law of `input`. The path's own does not count for its bands.
 void keep_as_rehearsal(const PredictOptions& options, const fs::path& folder, const Session& session,
                        chain::PredictionInput& input) {
-  const fs::path plain = options.output.has_filename() ? options.output : options.output.parent_path();
-  chain::add_rehearsal(options.parameters, folder, plain.filename().string(), session);
+  chain::add_rehearsal(options.parameters, folder, name_of(options), session);
   const chain::PredictionInput again = chain::read_prediction_input(options.parameters, options.path);
   input.law = again.law;
   input.parameters = again.parameters;
@@ -45,6 +48,8 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
   if (!options.dem && !(options.seeds.empty() && options.spec.empty() && options.store.empty()))
     throw InvalidInput("predict: --seeds, --spec and --store are of new runs; give --dem too");
   chain::PredictionInput input = chain::read_prediction_input(options.parameters, options.path);
+  if (options.rehearse && !law_decides(input.path.path))
+    chain::check_rehearsal(input.law, input.path.path, name_of(options));
   input.model = options.model;
   input.initial = options.initial;
   if (options.dem) {

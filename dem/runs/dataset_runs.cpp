@@ -17,20 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::set<std::string> series_listed(const fs::path& folder) {
-  std::set<std::string> names;
-  if (!fs::exists(folder / "dataset.json")) return names;
-  try {
-    const Json index = read_json(folder / "dataset.json", JsonSource::own);
-    for (const Json& test : index.at("tests")) names.insert(test.at("name"));
-  } catch (const Json::exception&) {
-    names.clear();
-  } catch (const InvalidInput&) {
-    names.clear();  // damaged: it is replaced, and what it listed is left alone
-  }
-  return names;
-}
-
 }  // namespace
 
 std::vector<PlannedTest> plan(const Spec& spec) {
@@ -135,7 +121,7 @@ Dataset run_planned(const std::vector<PlannedTest>& tests, const Json& spec, con
 Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, const fs::path& folder,
                      const RunStore& store, const Execution& execution) {
   const auto lock = lock_results(folder, execution);
-  std::set<std::string> stale = series_listed(folder), stale_probes = stale;
+  const std::set<std::string> listed = series_listed(folder);
   Dataset dataset;
   dataset.spec = spec;
   for (const PlannedTest& planned : tests) {
@@ -153,9 +139,7 @@ Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, co
       const fs::path probes = make_subfolder(folder, kProbesFolder) / (planned.name + ".csv");
       copy_durably(store.folder(test.run) / "probes.csv", probes);
       test.probes_sha256 = sha256_of_file(probes);
-      stale_probes.erase(planned.name);
     }
-    stale.erase(planned.name);
     const std::uint64_t seed = planned.preparation.packing.seed;
     if (std::find(dataset.seeds.begin(), dataset.seeds.end(), seed) == dataset.seeds.end())
       dataset.seeds.push_back(seed);
@@ -163,12 +147,7 @@ Dataset collect_runs(const std::vector<PlannedTest>& tests, const Json& spec, co
   }
   dataset.provenance = Json(provenance(execution));
   write_dataset_index(folder, dataset);
-  for (const std::string& name : stale) {
-    if (is_safe_name(name)) fs::remove(folder / (name + ".csv"));
-  }
-  for (const std::string& name : stale_probes) {
-    if (is_safe_name(name)) fs::remove(folder / kProbesFolder / (name + ".csv"));
-  }
+  remove_stale_series(folder, listed, dataset);
   return dataset;
 }
 

@@ -149,9 +149,38 @@ fs::path dataset_folder(const fs::path& given) {
   throw InvalidInput(fmt::format("{}: holds no dataset.json; give the folder of a data set", given.string()));
 }
 
+std::set<std::string> series_listed(const fs::path& folder) {
+  std::set<std::string> names;
+  if (!fs::exists(folder / "dataset.json")) return names;
+  try {
+    const Json index = read_json(folder / "dataset.json", JsonSource::own);
+    for (const Json& test : index.at("tests")) names.insert(test.at("name"));
+  } catch (const Json::exception&) {
+    names.clear();
+  } catch (const InvalidInput&) {
+    names.clear();  // damaged: it is replaced, and what it listed is left alone
+  }
+  return names;
+}
+
+void remove_stale_series(const fs::path& folder, const std::set<std::string>& listed, const Dataset& dataset) {
+  std::set<std::string> stale = listed, stale_probes = listed;
+  for (const DatasetTest& test : dataset.tests) {
+    stale.erase(test.record.name);
+    if (!test.probes_sha256.empty()) stale_probes.erase(test.record.name);
+  }
+  for (const std::string& name : stale) {
+    if (is_safe_name(name)) fs::remove(folder / (name + ".csv"));
+  }
+  for (const std::string& name : stale_probes) {
+    if (is_safe_name(name)) fs::remove(folder / kProbesFolder / (name + ".csv"));
+  }
+}
+
 Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (fs::equivalent(from, to, error)) return dataset;
+  const std::set<std::string> listed = series_listed(to);
   for (const DatasetTest& test : dataset.tests) {
     const std::string file = test.record.name + ".csv";
     copy_durably(from / file, to / file);
@@ -159,6 +188,7 @@ Dataset adopt(const Dataset& dataset, const fs::path& from, const fs::path& to) 
       copy_durably(from / kProbesFolder / file, make_subfolder(to, kProbesFolder) / file);
   }
   copy_durably(from / "dataset.json", to / "dataset.json");
+  remove_stale_series(to, listed, dataset);
   return read_dataset(to);
 }
 

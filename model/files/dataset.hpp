@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,15 @@ void write_dataset_index(const std::filesystem::path& folder, Dataset& dataset);
 /// InvalidInput when none of them holds a dataset.json.
 std::filesystem::path dataset_folder(const std::filesystem::path& given);
 
-/// Copies the data set in `from`, as it was read, to `to`, unless they are the same; returns what is there.
+/// Names of the series that the index in `folder` lists; none where there is none or it is damaged.
+std::set<std::string> series_listed(const std::filesystem::path& folder);
+
+/// Removes series and probes of those `listed` before that `dataset`, which has taken their place in `folder`, does not have.
+void remove_stale_series(const std::filesystem::path& folder, const std::set<std::string>& listed,
+                         const Dataset& dataset);
+
+/// Copies the data set in `from`, as it was read, to `to`, in place of the one there, unless they are the same; returns what is
+/// there.
 Dataset adopt(const Dataset& dataset, const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// The data set of `digest`, to which the law in `parameters` was fitted, if it is beside that file as `calibrate` has left

@@ -110,6 +110,19 @@ grep -q '^rehearsed 1 paths of all kinds, m = 1' text && jq -e '.rung.rehearsed 
 width() { tail -n 1 "$1" | cut -d, -f 29; }  # P_star_mean95
 "$grainlaw" predict out/parameters.json other.json -o other >/dev/null
 awk -v a="$(width rehearsed/other/evolution-law.csv)" -v b="$(width other/evolution-law.csv)" 'BEGIN { exit !(a > b) }' || fail "the band did not grow"
+# under another name it would count twice, and its name is taken
+code=0
+"$grainlaw" predict rehearsed/parameters.json path.json -o rehearsed/again --against out/predictions/uni --rehearse >/dev/null 2>err || code=$?
+[[ $code == 2 && ! -e rehearsed/again ]] && grep -q "rehearsal 'again': its path is rehearsed as 'uni'" err || fail "a path rehearsed twice: $(cat err)"
+code=0
+"$grainlaw" predict rehearsed/parameters.json other.json -o new/uni --against out/predictions/uni --rehearse >/dev/null 2>err || code=$?
+[[ $code == 2 ]] && grep -q "rehearsal 'uni': is another path of the law already" err || fail "two paths of one name: $(cat err)"
+# predicted along another path, without runs, nothing of the earlier comparison stays
+cp -r out/predictions/uni used
+"$grainlaw" predict out/parameters.json other.json -o used --quiet >/dev/null
+[[ ! -e used/comparison.json && -z $(find used -maxdepth 1 -name '*-s3.csv') ]] || fail "left: $(ls used)"
+"$grainlaw" check out/dataset/D2-0.70-s1.csv >text; grep -q " $(($(wc -l <out/dataset/D2-0.70-s1.csv) - 1)) rows" text || fail "rows: $(cat text)"
+"$grainlaw" check out >text; grep -q '[0-9] tests, [0-9]* prediction' text || fail "check of a folder: $(cat text)"
 # refitted from the data set it is found again; a second path makes two, and each can be left out
 "$grainlaw" calibrate --dataset rehearsed -o refitted --quiet >/dev/null
 diff <(jq .rehearsals rehearsed/parameters.json) <(jq .rehearsals refitted/parameters.json) || fail "rehearsals got lost"
@@ -119,6 +132,12 @@ code=0
 "$grainlaw" calibrate --dataset cheated -o bad --quiet 2>err || code=$?
 [[ $code == 2 ]] && grep -q 'fitted: test unseen (validation) holds the series of test D2-0.70-s2' err && [[ ! -e bad ]] ||
   fail "a fitted run became a rehearsal: $(cat err)"
+# fitted from other data, nothing of these stays
+cp -r rehearsed used-law
+"$grainlaw" calibrate --dataset "$GRAINLAW_SOURCE_DIR/examples/starters/dataset" -o used-law >/dev/null 2>err || [[ $? == 3 ]]
+[[ ! -e used-law/spec.resolved.json && ! -e used-law/dataset/rehearsals/uni && -e used-law/dataset/rehearsals-of-before/uni ]] || fail "of other data: $(ls used-law used-law/dataset)"
+grep -q 'put aside as' err || fail "silent: $(cat err)"
+cmp <(cd used-law/dataset && ls -- *.csv) <(jq -r '.tests[].name + ".csv"' used-law/dataset/dataset.json | sort) || fail "series of other data"
 # nor by one of another material, which a changed SPEC would leave in the folder: refused before anything runs
 jq '.size_width = 2' out/spec.resolved.json >narrow.json
 cp -r rehearsed before
