@@ -160,11 +160,11 @@ void inspect_parameters(const fs::path& file, Inspection& seen) {
   const CalibratedLaw law = read_parameters(file).law;
   std::vector<std::string> rungs;
   for (const Rung rung : calibrated_rungs(law)) rungs.push_back(to_string(rung));
-  seen.holds = {fmt::format("law of coupling {}, rungs {}, {}", to_string(law.coupling),
-                            rungs.empty() ? "none" : fmt::format("{}", fmt::join(rungs, ", ")),
-                            counted(law.rehearsals.size(), "rehearsal")),
-                fmt::format("calibrated at volume fractions {:.4g} to {:.4g}, deviatoric strain to {:.4g}",
-                            law.range.nu_min, law.range.nu_max, law.range.eps_dev_max)};
+  seen.holds.push_back(fmt::format("law of coupling {}, rungs {}, {}", to_string(law.coupling),
+                                   rungs.empty() ? "none" : fmt::format("{}", fmt::join(rungs, ", ")),
+                                   counted(law.rehearsals.size(), "rehearsal")));
+  seen.holds.push_back(fmt::format("calibrated at volume fractions {:.4g} to {:.4g}, deviatoric strain to {:.4g}",
+                                   law.range.nu_min, law.range.nu_max, law.range.eps_dev_max));
   for (std::string& line : left_out_rungs(law)) seen.holds.push_back(std::move(line));
   if (!law.converged) seen.holds.emplace_back("its calibration did not converge");
 }
@@ -211,9 +211,9 @@ void inspect_table(const fs::path& file, Inspection& seen) {
   if (has("strain_xx")) {
     seen.kind = "series";
     if (has("stress_xx[Pa]")) matched<Observation>(reader);
-    while (reader.next(row)) {
-    }
-    seen.holds = {fmt::format("{}{}", counted(reader.row(), "row"),
+    std::size_t rows = 0;
+    while (reader.next(row)) ++rows;
+    seen.holds = {fmt::format("{}{}", counted(rows, "row"),
                               has("stress_xx[Pa]") ? "" : ": strains alone, for strain_csv of PATH")};
     if (has("stress_xx[Pa]"))
       seen.holds.push_back(fs::exists(index) ? "what it says is judged with its data set: check " + index.string()
@@ -231,7 +231,7 @@ void inspect_folder(const fs::path& folder, const fs::path& output, const Execut
     const ReportInput input = read_report_input(folder);
     seen.holds = {
         fmt::format("{}, {}", counted(input.tests.size(), "test"), counted(input.predictions.size(), "prediction"))};
-    seen.holds.insert(seen.holds.end(), input.warnings.begin(), input.warnings.end());
+    for (const std::string& warning : input.warnings) seen.holds.push_back("warning: " + warning);
     return inspect_parameters(folder / "parameters.json", seen);
   }
   seen.kind = "data set";
@@ -269,7 +269,8 @@ Inspection inspected(const fs::path& file, const Company& company, const fs::pat
 /// The first SPEC, or where none is given the spec beside the first parameters.json.
 Company company_of(const std::vector<fs::path>& files) {
   Company company;
-  for (const fs::path& file : files) {
+  for (const fs::path& given : files) {
+    const fs::path file = fs::is_directory(given) ? given / "parameters.json" : given;
     try {
       if (!fs::is_regular_file(file) || file.extension() != ".json") continue;
       const Kind* kind = kind_of(read_json(file, JsonSource::any));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "fit/calibration_file.hpp"
 #include "model/files/digest.hpp"
@@ -82,7 +83,9 @@ void add_dataset(Dataset dataset, const std::string& expected_digest, ReportInpu
   input.provenance.push_back({"digest of the data set", dataset.digest, {"dataset/dataset.json"}});
   add_facts(dataset.provenance, "", "dataset/dataset.json", input.provenance);
   add_facts(dataset.spec, "", "dataset/dataset.json", input.spec);
+  std::set<std::string> counted;  // both branches of a preparation are one run
   for (DatasetTest& test : dataset.tests) {
+    if (!test.run.empty() && !counted.insert(test.run).second) test.cost = {};
     for (const std::string& warning : test.warnings) input.run_warnings.push_back(test.record.name + ": " + warning);
     input.costs.push_back(test.cost);
     input.tests.push_back(std::move(test.record));

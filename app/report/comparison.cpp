@@ -63,9 +63,12 @@ Table error_pairs(const std::vector<PathError>& ours, const std::vector<PathErro
   std::vector<OnPath> common;
   for (const PathError& mine : ours) {
     if (!mine.recommended) continue;
-    const auto theirs = std::ranges::find_if(other, [&](const PathError& entry) {
+    const auto along = [&](const PathError& entry) {
       return entry.recommended && Json(path_to_json(*entry.along)) == Json(path_to_json(*mine.along));
-    });
+    };
+    auto theirs =
+        std::ranges::find_if(other, [&](const PathError& entry) { return entry.path == mine.path && along(entry); });
+    if (theirs == other.end()) theirs = std::ranges::find_if(other, along);
     if (theirs != other.end()) common.push_back({mine, *theirs});
   }
   const auto column = [](std::size_t q, bool mine) {

@@ -35,7 +35,7 @@ Table unseen_table(const std::vector<chain::PathError>& errors, bool predicted,
     };
   };
   Table table = table_of(
-      predicted ? "Predicted paths: error, RMS over max|DEM| of the mean over runs [%]; in brackets the "
+      predicted ? "Predicted paths: error, RMS over max|DEM|, mean of the runs' own [%]; in brackets the "
                   "share of rows of single runs within their 95 % band [%]"
                 : "Rehearsed paths, which no fit saw either: error, RMS over the largest value of the law, to "
                   "first order [%]",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "chain/rehearsals.hpp"
 #include "model/files/fields_json.hpp"
@@ -90,6 +91,10 @@ BandsStudy study_bands(const fs::path& folder, const std::vector<fs::path>& more
   if (paths.size() < 2) {
     throw InvalidInput(fmt::format("{}: has {} rehearsals; two paths or more are left out in turn, give --runs",
                                    folder.string(), paths.size()));
+  }
+  std::map<std::string, int> times;  // records are found by names, and two folders may be called alike
+  for (predict::RehearsalRuns& path : paths) {
+    if (const int n = ++times[path.name]; n > 1) path.name += fmt::format("-{}", n);
   }
   rehearse(law, paths, execution);
   for (const Rung rung : calibrated_rungs(law)) {
