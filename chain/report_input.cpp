@@ -82,6 +82,9 @@ void add_dataset(Dataset dataset, const std::string& expected_digest, ReportInpu
   }
   input.provenance.push_back({"digest of the data set", dataset.digest, {"dataset/dataset.json"}});
   add_facts(dataset.provenance, "", "dataset/dataset.json", input.provenance);
+  if (dataset.spec.is_object() &&
+      dataset.spec.erase("coupling") > 0)  // of the data, which another law may be fitted to
+    input.spec.push_back({"coupling", to_string(input.calibration.law.coupling), {"parameters.json"}});
   add_facts(dataset.spec, "", "dataset/dataset.json", input.spec);
   std::set<std::string> counted;  // both branches of a preparation are one run
   for (DatasetTest& test : dataset.tests) {

@@ -295,7 +295,8 @@ Paragraph verdict(const ReportInput& input, const std::vector<PathError>& errors
   if (!input.calibration.law.converged)
     return {plain("Do not use it yet: the fit did not converge, what follows is not its optimum."), Tone::poor};
   if (errors.empty())
-    return {plain("Not judged: no path that the fit never saw was run beside the law. Its parameters stand below; how "
+    return {plain("Not judged: no path was rehearsed and no prediction here is compared with runs. Its parameters "
+                  "stand below; how "
                   "well it predicts is not known."),
             Tone::poor};
   std::vector<std::string> clauses;

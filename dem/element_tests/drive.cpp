@@ -17,12 +17,6 @@ bool is_upright(const StraightSegment& segment) {
   return (D - Eigen::Matrix3d(D.diagonal().asDiagonal())).norm() == 0 && segment.spin.isZero(0);
 }
 
-/// Rate of the edge that the cosine prescribes: the most compressed one, or the most stretched where none shrinks.
-double leading_rate(const Eigen::Matrix3d& D) {
-  const double compressed = D.diagonal().minCoeff();
-  return compressed < 0 ? compressed : D.diagonal().maxCoeff();
-}
-
 /// The functions of a cosine drive: those of the C library, or the same bits everywhere.
 struct Elementary {
   double (*expm1)(double);
@@ -70,6 +64,11 @@ Eigen::Vector3d stretch_of(const StraightSegment& segment, double e) {
   // One function for all three: Eigen's exp() takes vectors of two and another for the third, which differ in the last bit.
   double (*const exp)(double) = segment.portable ? portable::exp : [](double x) { return std::exp(x); };
   return (e * segment.direction.tensor.diagonal()).unaryExpr(exp);
+}
+
+double leading_rate(const Eigen::Matrix3d& D) {
+  const double compressed = D.diagonal().minCoeff();
+  return compressed < 0 ? compressed : D.diagonal().maxCoeff();
 }
 
 double path_parameter(const Drive& drive, double t) {

@@ -53,6 +53,9 @@ Drive make_drive(const StraightSegment& segment, const DriveOptions& options, co
 /// exp(e D), of the edges of a cell [-].
 Eigen::Vector3d stretch_of(const StraightSegment& segment, double e);
 
+/// Rate of the edge that the cosine prescribes: the most compressed one, or the most stretched where none shrinks.
+double leading_rate(const Eigen::Matrix3d& D);
+
 double path_parameter(const Drive& drive, double t);       ///< e(t), exact at both ends [-]
 double path_parameter_rate(const Drive& drive, double t);  ///< de/dt [1/s]
 CellMotion motion_at(const Drive& drive, double t);        ///< H, L and transport

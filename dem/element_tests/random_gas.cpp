@@ -24,18 +24,12 @@ void require(bool ok, const char* key, double value, const char* rule) {
 }
 
 void check_options(const PackingOptions& o, double nu_gas) {
-  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
-  const auto not_negative = [](double x) { return x >= 0 && std::isfinite(x); };
   require(o.particles >= 1 && o.particles <= kMaxParticles, "particles", static_cast<double>(o.particles),
           "is outside [1, 1e8]");
   require(o.size_width >= 1 && o.size_width <= kMaxSizeWidth, "size_width", o.size_width, "is outside [1, 1000]");
-  require(positive(o.mean_radius), "mean_radius", o.mean_radius, "must be positive and finite");
-  require(positive(o.material.density), "density", o.material.density, "must be positive and finite");
-  require(positive(o.material.stiffness), "stiffness", o.material.stiffness, "must be positive and finite");
-  require(not_negative(o.material.contact_viscosity), "contact_viscosity", o.material.contact_viscosity,
-          "must be finite and not negative");
-  require(not_negative(o.material.background_viscosity), "background_viscosity", o.material.background_viscosity,
-          "must be finite and not negative");
+  require(o.mean_radius > 0 && std::isfinite(o.mean_radius), "mean_radius", o.mean_radius,
+          "must be positive and finite");
+  check(o.material);
   require(nu_gas > 0 && nu_gas <= kMaxGasDensity, "nu_gas", nu_gas, "is outside (0, 0.5]");
 }
 

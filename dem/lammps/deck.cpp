@@ -67,7 +67,7 @@ std::string deck_drive(const std::string& name, const Drive& drive, std::uint64_
   if (drive.options.profile == Profile::constant) {
     text += fmt::format("variable e equal {}*v_n/{}\nvariable rate equal {}\n", length, steps, length / drive.duration);
   } else {
-    double leading = D.minCoeff() < 0 ? D.minCoeff() : D.maxCoeff();  // Eq. (2) is that of this edge
+    const double leading = leading_rate(drive.segment.direction.tensor);
     text += fmt::format(
         "variable z equal 1+({0})*(1-cos(PI*v_n/{1}))/2\n"
         "variable e equal ln(v_z)/({2})\n"
