@@ -9,6 +9,7 @@
 #include "dem/runs/dataset_runs.hpp"
 #include "dem/runs/spec_file.hpp"
 #include "model/files/column.hpp"
+#include "model/files/json_document.hpp"
 #include "model/files/output.hpp"
 #include "model/files/path_json.hpp"
 #include "model/files/series_csv.hpp"
@@ -87,11 +88,23 @@ bool is_result(const std::string& name) {
                                  stem == "loading" || stem == "unloading");
 }
 
-/// Removes what an earlier test left in the folder: beside the new files it would be taken for theirs.
-void remove_other_results(const fs::path& folder, const std::vector<std::string>& files) {
-  for (const fs::path& entry : entries_of(folder)) {
-    const std::string name = entry.filename().string();
-    if (is_result(name) && std::ranges::find(files, name) == files.end()) fs::remove(entry);
+/// The files of an earlier test in the folder, by its simulation.json.
+std::vector<std::string> files_of_before(const fs::path& folder) {
+  try {
+    if (fs::exists(folder / "simulation.json"))
+      return read_json(folder / "simulation.json", JsonSource::own).at("files").get<std::vector<std::string>>();
+  } catch (const std::exception&) {
+    return {};  // nobody's, or damaged: it is replaced, and what it listed is left alone
+  }
+  return {};
+}
+
+/// Removes those files that `files` does not name: beside these they would be taken for this test's.
+void remove_results_of(const std::vector<std::string>& before, const fs::path& folder,
+                       const std::vector<std::string>& files) {
+  for (const std::string& name : before) {
+    if (is_result(name) && is_safe_name(name) && std::ranges::find(files, name) == files.end())
+      fs::remove(folder / name);
   }
 }
 
@@ -114,6 +127,7 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
   make_runs(runs_of(tests), store, execution, counts);
   const auto lock = lock_results(output, execution);
   const std::string key = run_of(tests.front());
+  const std::vector<std::string> before = files_of_before(output);
   const Json record = store.finished(key);
   std::vector<std::string> files = publish(store, key, record, output);
   const Path path = prepared ? unloading_branch(test.preparation) : test.path;
@@ -139,7 +153,7 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
   summary["warnings"] = simulation.warnings;
   summary["files"] = files;
   summary["provenance"] = provenance(execution);
-  remove_other_results(output, files);
+  remove_results_of(before, output, files);
   write_json(output / "simulation.json", summary);
   for (const std::string& warning : simulation.warnings) execution.watch.log("warning: " + warning);
   return simulation;

@@ -50,6 +50,9 @@ awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) { sub(/\[.*/, "", $i); c[$i] = i } 
   again/frames.csv || fail "frames: $(cat again/frames.csv)"
 "$grainlaw" simulate on.json -o again --quiet >/dev/null
 cmp <(cd again && ls -- *.state *.csv) <(jq -r '.files[]' again/simulation.json | sort) || fail "left: $(ls again)"
+echo mine >again/loading.csv
+"$grainlaw" simulate on.json -o again --quiet >/dev/null
+[[ $(cat again/loading.csv) == mine ]] || fail "a file of the user's is gone"
 
 # two spheres that do not touch: what has no value is null, with the reason (hard case D21)
 printf 'id,x,y,z,r,vx,vy,vz\n0,0.001,0.001,0.001,0.001,0,0,0\n1,0.006,0.006,0.006,0.001,0,0,0\n' >apart.csv

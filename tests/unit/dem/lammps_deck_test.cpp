@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "dem/lammps/program.hpp"
 #include "model/vocabulary/error.hpp"
@@ -14,7 +13,6 @@
 namespace grainlaw::dem {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 DeckSpheres spheres() { return {{}, {}, 1e-3}; }
 
