@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <set>
 
 #include "dem/files/sphere_table.hpp"
 #include "dem/files/state_file.hpp"
@@ -77,40 +77,26 @@ std::vector<std::string> publish(const RunStore& store, const std::string& key, 
   return names;
 }
 
-/// Whether a simulation writes files of this name into its folder.
-bool is_result(const std::string& name) {
-  const fs::path file(name);
-  const std::string extension = file.extension().string(), stem = file.stem().string();
-  const auto begins = [&](const char* with) { return stem.starts_with(with); };
-  if (extension == ".state") return stem == "end" || begins("frame-") || begins("loading-") || begins("unloading-");
-  if (extension == ".restart") return begins("loading-") || begins("unloading-");
-  return extension == ".csv" && (stem == "series" || stem == "end" || stem == "frames" || stem == "probes" ||
-                                 stem == "loading" || stem == "unloading");
-}
-
-/// The files of an earlier test in the folder, by its simulation.json.
-std::vector<std::string> files_of_before(const fs::path& folder) {
+/// Series and states that an earlier test has left in the folder, by its simulation.json.
+std::set<std::string> files_of_before(const fs::path& folder) {
+  std::set<std::string> names;
   try {
     if (fs::exists(folder / "simulation.json"))
-      return read_json(folder / "simulation.json", JsonSource::own).at("files").get<std::vector<std::string>>();
+      names = read_json(folder / "simulation.json", JsonSource::own).at("files").get<std::set<std::string>>();
   } catch (const std::exception&) {
-    return {};  // nobody's, or damaged: it is replaced, and what it listed is left alone
+    names.clear();  // nobody's, or damaged: it is replaced, and what it listed is left alone
   }
-  return {};
+  std::erase_if(names, [](const std::string& name) {
+    return !is_safe_name(name) || !(name.ends_with(".csv") || name.ends_with(".state") || name.ends_with(".restart"));
+  });
+  return names;
 }
 
-/// Removes those files that `files` does not name: beside these they would be taken for this test's.
-void remove_results_of(const std::vector<std::string>& before, const fs::path& folder,
-                       const std::vector<std::string>& files) {
-  for (const std::string& name : before) {
-    if (is_result(name) && is_safe_name(name) && std::ranges::find(files, name) == files.end())
-      fs::remove(folder / name);
-  }
-}
-
-/// Refuses a folder into which the test would write over what it starts from.
+/// Refuses a folder in which the test would write over what it starts from, or remove it.
 void require_start_survives(const TestFile& test, const fs::path& output) {
-  if (!is_result(test.given_file.filename().string())) return;
+  const std::string name = test.given_file.filename().string();
+  const bool written = name == "end.state" || name == "end.csv" || name.starts_with("frame-");
+  if (!written && !files_of_before(output).contains(name)) return;
   const fs::path folder = test.given_file.has_parent_path() ? test.given_file.parent_path() : ".";
   std::error_code absent;
   if (!fs::equivalent(folder, output, absent)) return;
@@ -127,7 +113,7 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
   make_runs(runs_of(tests), store, execution, counts);
   const auto lock = lock_results(output, execution);
   const std::string key = run_of(tests.front());
-  const std::vector<std::string> before = files_of_before(output);
+  std::set<std::string> stale = files_of_before(output);
   const Json record = store.finished(key);
   std::vector<std::string> files = publish(store, key, record, output);
   const Path path = prepared ? unloading_branch(test.preparation) : test.path;
@@ -153,7 +139,8 @@ SimulationResult simulate_into(const TestFile& test, const fs::path& output, con
   summary["warnings"] = simulation.warnings;
   summary["files"] = files;
   summary["provenance"] = provenance(execution);
-  remove_results_of(before, output, files);
+  for (const std::string& name : files) stale.erase(name);
+  for (const std::string& name : stale) fs::remove(output / name);  // beside these they would be taken for this test's
   write_json(output / "simulation.json", summary);
   for (const std::string& warning : simulation.warnings) execution.watch.log("warning: " + warning);
   return simulation;
