@@ -60,8 +60,8 @@ TEST(InheritedError, IsThatOfBothStepsTogether) {
       for (std::size_t c = 0; c < x.size(); ++c) expected += std::pow(y[c] - kSlope * x[c] - mean, 2) / (5 * 4);
       EXPECT_NEAR(b.solution.x(0), mean, 1e-9);
       inherit(a, y, kSlope, b, given);
-      EXPECT_NEAR(variance(b), expected, 1e-8 * expected);
-      EXPECT_NEAR(b.covariance()(0, 0), expected, 1e-8 * expected);
+      EXPECT_NEAR(variance(b), expected, 1e-9 * expected);
+      EXPECT_NEAR(b.covariance()(0, 0), expected, 1e-9 * expected);
       EXPECT_NEAR(b.stage.estimates[0].estimate.degrees_of_freedom, 4, 1e-9);
     }
   }
@@ -89,7 +89,7 @@ TEST(InheritedError, TheFewerPackingsDecide) {
   EXPECT_NEAR(b.stage.estimates[0].estimate.degrees_of_freedom, 2, 1e-9);
   Eigen::RowVectorXd expected = own;
   expected.head(3) -= kSlope * a.influence.row(0);
-  EXPECT_NEAR((b.influence.row(0) - expected).norm(), 0, 1e-8);
+  EXPECT_NEAR((b.influence.row(0) - expected).norm(), 0, 1e-9);
 }
 
 /// D x0 - value and x0 - 1, one pair for each packing: D moves the Jacobian, too.
