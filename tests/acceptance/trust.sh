@@ -14,8 +14,9 @@ for argument in "$@"; do
     *) options+=("$argument") ;;
   esac
 done
+set -- "${options[@]}"  # what is sourced without arguments takes those of the script
 # shellcheck source=tests/acceptance/setup.sh
-. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "${options[@]}"
+. "$(dirname "${BASH_SOURCE[0]}")/setup.sh" "$@"
 points=10000 moments=1000
 [[ $quick == no ]] || points=60 moments=8
 
