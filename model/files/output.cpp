@@ -32,8 +32,11 @@ fs::path temporary_name(const fs::path& file) {
   return folder_of(file) / fmt::format(".{}{}{}-{}", file.filename().string(), kMark, ::getpid(), count++);
 }
 
-/// Whether a name is one that temporary_name() gives.
-bool is_temporary(const std::string& name) { return name.starts_with('.') && name.find(kMark) != std::string::npos; }
+/// Whether a name is one that temporary_name() gives, to `file` if that is not empty.
+bool is_temporary(const std::string& name, const std::string& file) {
+  return file.empty() ? name.starts_with('.') && name.find(kMark) != std::string::npos
+                      : name.starts_with("." + file + std::string(kMark));
+}
 
 [[noreturn]] void fail_at(const fs::path& file, const char* what) {
   throw Error(
@@ -160,6 +163,7 @@ void write_as_named(const fs::path& file, std::string_view bytes) {
     if (error || links == 40) throw Error(fmt::format("{}: is a link that leads nowhere; remove it", file.string()));
     target = folder_of(target) / to;
   }
+  remove_leftovers(folder_of(target), target.filename().string());
   write_durably(target, bytes);
 }
 
@@ -167,11 +171,11 @@ void copy_durably(const fs::path& from, const fs::path& to) { write_durably(to, 
 
 void copy_whole(const fs::path& from, const fs::path& to) { write_whole(to, read_bytes(from)); }
 
-void remove_leftovers(const fs::path& folder) {
+void remove_leftovers(const fs::path& folder, const std::string& file_name) {
   std::vector<fs::path> temporaries;
   std::error_code ignored;  // what cannot be listed or removed does no harm
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (is_temporary(entry.path().filename().string())) temporaries.push_back(entry.path());
+    if (is_temporary(entry.path().filename().string(), file_name)) temporaries.push_back(entry.path());
   }
   for (const fs::path& file : temporaries) {
     const int descriptor = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);

@@ -35,8 +35,9 @@ void write_as_named(const std::filesystem::path& file, std::string_view bytes);
 /// Copies `from` to `to` in the same manner. Throws Error, also when `from` cannot be read.
 void copy_durably(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Removes the temporary files that killed processes left in a folder; those of living ones stay.
-void remove_leftovers(const std::filesystem::path& folder);
+/// Removes the temporary files that killed processes left in a folder; those of living ones stay. `file`: only those of a file of
+/// that name, where the folder is the user's.
+void remove_leftovers(const std::filesystem::path& folder, const std::string& file = "");
 
 /// 1 to 100 of letters, digits, '.', '-', '_', beginning with a letter or a digit, not ending with '.', and no device of Windows
 /// (CON, nul.csv).

@@ -165,7 +165,10 @@ code=0
 "$grainlaw" predict out/parameters.json path.json -o bad --rehearse 2>err || code=$?
 [[ $code == 2 && ! -e bad ]] || fail "--rehearse without runs"
 
+touch .report.html.tmp-1-0 .mine.tmp-1-0  # of a report that was killed; of somebody else
 "$grainlaw" report out -o report.html >table.txt
+[[ ! -e .report.html.tmp-1-0 && -e .mine.tmp-1-0 ]] || fail "left of a killed report, or taken from others: $(ls -a)"
+rm .mine.tmp-1-0
 [[ -s report.html ]] && grep -q 'pressure.p0' table.txt || fail report
 grep -q 'class="verdict' report.html && grep -q 'Distrust first' report.html || fail "what a reader sees first"
 "$grainlaw" report refit -o refit.html --compare out >/dev/null
