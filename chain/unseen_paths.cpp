@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "chain/fitted_paths.hpp"
-#include "model/files/path_json.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -69,14 +68,14 @@ std::vector<PathError> errors_of(const Rehearsal& rehearsal, const CalibratedLaw
 
 std::vector<PathError> errors_on_unseen_paths(const ReportInput& input) {
   std::vector<PathError> all;
-  std::vector<Json> predicted;
+  std::vector<const Path*> predicted;
   for (const predict::PredictionFolder& prediction : input.predictions) {
     const std::vector<PathError> errors = errors_of(prediction);
     all.insert(all.end(), errors.begin(), errors.end());
-    if (!errors.empty()) predicted.push_back(Json(path_to_json(prediction.path)));
+    if (!errors.empty()) predicted.push_back(&prediction.path);
   }
   for (const Rehearsal& rehearsal : input.calibration.law.rehearsals) {
-    if (std::ranges::find(predicted, Json(path_to_json(rehearsal.path))) != predicted.end()) continue;
+    if (std::ranges::any_of(predicted, [&](const Path* path) { return same_path(*path, rehearsal.path); })) continue;
     const std::vector<PathError> errors = errors_of(rehearsal, input.calibration.law);
     all.insert(all.end(), errors.begin(), errors.end());
   }

@@ -5,7 +5,6 @@
 
 #include "app/report/first_screen.hpp"
 #include "app/report/tables.hpp"
-#include "model/files/path_json.hpp"
 
 namespace grainlaw::app::report {
 namespace {
@@ -64,7 +63,7 @@ Table error_pairs(const std::vector<PathError>& ours, const std::vector<PathErro
   for (const PathError& mine : ours) {
     if (!mine.recommended) continue;
     const auto along = [&](const PathError& entry) {
-      return entry.recommended && Json(path_to_json(*entry.along)) == Json(path_to_json(*mine.along));
+      return entry.recommended && same_path(*entry.along, *mine.along);
     };
     auto theirs =
         std::ranges::find_if(other, [&](const PathError& entry) { return entry.path == mine.path && along(entry); });

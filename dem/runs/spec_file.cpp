@@ -82,12 +82,7 @@ bool may_share_a_run(Role a, Role b) {
 /// Paths that can be followed, names that differ, runs that end and are not both fitted and judged.
 void check_tests(const Spec& spec, const std::string& name) {
   std::set<std::string> names;
-  struct Run {
-    Branch branch;
-    std::vector<StraightSegment> path;
-    std::size_t test;
-  };
-  std::vector<Run> runs;
+  std::vector<std::pair<Path, std::size_t>> runs;  // and whose test they are
   for (std::size_t i = 0; i < spec.tests.size(); ++i) {
     const TestRequest& test = spec.tests[i];
     const std::vector<double> starts = test.mode == "ISO" ? std::vector<double>{0} : test.densities;
@@ -98,16 +93,15 @@ void check_tests(const Spec& spec, const std::string& name) {
       }
       const Path path = path_of(test, nu, spec);
       if (test.mode != "ISO") check_path(path, spec.preparation, fmt::format("{}: tests[{}]: at nu = {}", name, i, nu));
-      const std::vector<StraightSegment> along = resolve(path);
-      for (const Run& run : runs) {
-        const Role other = spec.tests[run.test].role;
-        if (may_share_a_run(test.role, other) || run.branch != path.branch || !same_path(run.path, along)) continue;
+      for (const auto& [known, at] : runs) {
+        const Role other = spec.tests[at].role;
+        if (may_share_a_run(test.role, other) || !same_path(known, path)) continue;
         throw InvalidInput(fmt::format(
             "{}: tests[{}]: '{}' ({}) is the run of tests[{}] ({}) on the same packings; what is fitted is "
             "fitted once and judges nothing, remove one or give it another path",
-            name, i, record_name(test, nu, spec.seeds.front()), to_string(test.role), run.test, to_string(other)));
+            name, i, record_name(test, nu, spec.seeds.front()), to_string(test.role), at, to_string(other)));
       }
-      runs.push_back({path.branch, along, i});
+      runs.emplace_back(path, i);
     }
   }
 }

@@ -16,24 +16,19 @@ constexpr std::array<Quantity, 3> kQuantities{
     [](const Observation& row, const LawParameters<double>&) { return row.s_par; },
     [](const Observation& row, const LawParameters<double>&) { return row.F_par; }};
 
-/// Runs of one path, no two on the same packing.
-struct Runs {
-  std::vector<const TestRecord*> tests;
-  std::vector<StraightSegment> path;
-};
+/// Of one path, no two on the same packing.
+using Runs = std::vector<const TestRecord*>;
 
 std::vector<Runs> runs_of_paths(const DataSet& data) {
   std::vector<Runs> all;
   for (const TestRecord* test : data.all_used()) {
-    std::vector<StraightSegment> path = resolve(test->path);
-    const auto known = std::ranges::find_if(all, [&](const Runs& runs) {
-      return runs.tests.front()->path.branch == test->path.branch && same_path(runs.path, path);
-    });
+    const auto known =
+        std::ranges::find_if(all, [&](const Runs& runs) { return same_path(runs.front()->path, test->path); });
+    const auto on_its_packing = [&](const TestRecord* other) { return other->packing.seed == test->packing.seed; };
     if (known == all.end())
-      all.push_back({{test}, std::move(path)});
-    else if (std::ranges::none_of(known->tests,
-                                  [&](const TestRecord* t) { return t->packing.seed == test->packing.seed; }))
-      known->tests.push_back(test);
+      all.push_back({test});
+    else if (std::ranges::none_of(*known, on_its_packing))
+      known->push_back(test);
   }
   return all;
 }
@@ -42,7 +37,7 @@ std::vector<Runs> runs_of_paths(const DataSet& data) {
 std::vector<const Observation*> rows_at(const Runs& runs, std::size_t i, const LawParameters<double>& law,
                                         double nu_min) {
   std::vector<const Observation*> rows;
-  for (const TestRecord* test : runs.tests) {
+  for (const TestRecord* test : runs) {
     if (i >= test->rows.size()) return {};
     const Observation& row = test->rows[i];
     const double off = rows.empty() ? 0 : (row.strain.tensor - rows.front()->strain.tensor).norm();
@@ -56,10 +51,10 @@ std::vector<const Observation*> rows_at(const Runs& runs, std::size_t i, const L
 /// over the rows of the variance between them. False without rows.
 bool add_path(const Runs& runs, const std::vector<Eigen::Index>& packing, Quantity quantity,
               const LawParameters<double>& law, double nu_min, Eigen::MatrixXd& gram) {
-  const auto n = static_cast<Eigen::Index>(runs.tests.size());
+  const auto n = static_cast<Eigen::Index>(runs.size());
   Eigen::MatrixXd of_path = Eigen::MatrixXd::Zero(n, n);
   int count = 0;
-  for (std::size_t i = 0; i < runs.tests.front()->rows.size(); ++i) {
+  for (std::size_t i = 0; i < runs.front()->rows.size(); ++i) {
     const std::vector<const Observation*> rows = rows_at(runs, i, law, nu_min);
     if (rows.empty()) continue;
     Eigen::VectorXd value(n);
@@ -88,13 +83,13 @@ double degrees_of_freedom(const Eigen::MatrixXd& gram, double least, double most
 PackingScatter packing_scatter(const DataSet& data, const LawParameters<double>& law, double nu_min) {
   std::vector<Runs> paths = runs_of_paths(data);
   PackingScatter scatter;
-  for (const Runs& runs : paths) scatter.packings = std::max(scatter.packings, static_cast<int>(runs.tests.size()));
-  std::erase_if(paths, [](const Runs& runs) { return runs.tests.size() < 2; });
+  for (const Runs& runs : paths) scatter.packings = std::max(scatter.packings, static_cast<int>(runs.size()));
+  std::erase_if(paths, [](const Runs& runs) { return runs.size() < 2; });
   std::vector<std::uint64_t> packings;  // that share a path with another
   double beyond_the_first = 0;
   for (const Runs& runs : paths) {
-    for (const TestRecord* test : runs.tests) packings.push_back(test->packing.seed);
-    beyond_the_first += static_cast<double>(runs.tests.size() - 1);
+    for (const TestRecord* test : runs) packings.push_back(test->packing.seed);
+    beyond_the_first += static_cast<double>(runs.size() - 1);
   }
   std::ranges::sort(packings);
   packings.erase(std::unique(packings.begin(), packings.end()), packings.end());
@@ -107,7 +102,7 @@ PackingScatter packing_scatter(const DataSet& data, const LawParameters<double>&
     int count = 0;
     for (const Runs& runs : paths) {
       std::vector<Eigen::Index> index;
-      for (const TestRecord* test : runs.tests)
+      for (const TestRecord* test : runs)
         index.push_back(std::ranges::lower_bound(packings, test->packing.seed) - packings.begin());
       count += add_path(runs, index, quantity, law, nu_min, gram) ? 1 : 0;
     }

@@ -236,6 +236,10 @@ bool same_path(const std::vector<StraightSegment>& a, const std::vector<Straight
   });
 }
 
+bool same_path(const Path& a, const Path& b) {
+  return a.branch == b.branch && !law_decides(a) && !law_decides(b) && same_path(resolve(a), resolve(b));
+}
+
 std::vector<StraightSegment> resolve(const Path& path, bool portable) {
   std::vector<StraightSegment> segments = resolve_known(path, portable);
   if (segments.size() < path.segments.size()) resolve(path.segments[segments.size()], segments.size(), path.nu, {});

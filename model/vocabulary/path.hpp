@@ -92,6 +92,8 @@ inline constexpr double kSameDensity = 1e-3;
 
 /// Whether two paths are one, however they are written: volume fractions within kSameDensity, strains of legs within 1 %.
 bool same_path(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b);
+/// Likewise from the same branch; false where the law decides where one of them leads.
+bool same_path(const Path& a, const Path& b);
 
 inline constexpr double kMaxVolumeFraction = 0.9;  ///< beyond it overlaps are no small fraction of the radius any more
 
