@@ -73,6 +73,15 @@ bool has_values(const CalibratedLaw& law, std::string_view group) {
   return true;
 }
 
+bool is_told(const CalibratedLaw& law, std::string_view group) {
+  for (std::size_t i = 0; i < kParameterCount; ++i) {
+    const Status status = law.estimates[i].status;
+    if (is_of(parameter_table()[i].name, group) && (status == Status::fitted || status == Status::at_bound))
+      return true;
+  }
+  return false;
+}
+
 bool knows_fabric(const LawParameters<double>& law) {
   return !std::isnan(law.fabric_max.Q_limit + law.fabric_max.Q_c + law.fabric_rate.Q_limit + law.fabric_rate.Q_c);
 }

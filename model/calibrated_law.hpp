@@ -77,6 +77,9 @@ bool says_nothing(const CalibratedLaw& law, std::size_t parameter);
 /// Whether every parameter of `group` (a name in parameter_table() up to its dot) has a value, i.e. is identified.
 bool has_values(const CalibratedLaw& law, std::string_view group);
 
+/// Whether data tell any parameter of `group`: one is fitted. Else all are decided, taken as published or from elsewhere.
+bool is_told(const CalibratedLaw& law, std::string_view group);
+
 /// Whether the law says anything of the fabric, that is its laws of Eq. (20) have values.
 bool knows_fabric(const LawParameters<double>& law);
 

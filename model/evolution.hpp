@@ -91,11 +91,4 @@ LawState<T> evolution_rate(const LawModuli<T>& m, const Anisotropy<T>& anisotrop
   return rate;
 }
 
-/// The same at volume fraction `nu`.
-template <class T>
-LawState<T> evolution_rate(const LawParameters<T>& p, Coupling coupling, const LawState<T>& y, double nu,
-                           const LawDirection& direction) {
-  return evolution_rate(along(moduli_at(p, nu), p.lode, direction), p.anisotropy, coupling, y, direction);
-}
-
 }  // namespace grainlaw

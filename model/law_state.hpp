@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "model/vocabulary/path.hpp"
 #include "model/vocabulary/tensor.hpp"
 
 namespace grainlaw {
@@ -114,6 +115,13 @@ inline LawDirection law_direction(const StrainRate& rate) {
 inline LawDirection law_direction(const Eigen::Matrix3d& L) {
   LawDirection direction = law_direction(StrainRate{0.5 * (L + L.transpose())});
   direction.spin << (L(2, 1) - L(1, 2)) / 2, (L(0, 2) - L(2, 0)) / 2, (L(1, 0) - L(0, 1)) / 2;
+  return direction;
+}
+
+/// Of a segment of a given path, whose shear may be noise beside its volumetric strain: then it has none.
+inline LawDirection path_direction(const Eigen::Matrix3d& L) {
+  LawDirection direction = law_direction(L);
+  if (!shears(StrainRate{L})) direction = {.dx = direction.dx, .spin = direction.spin};
   return direction;
 }
 

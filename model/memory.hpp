@@ -155,7 +155,8 @@ Deviator<T> expansion_yield(const LawModuli<T>& m, const LawParameters<T>& p, co
   return (M - memory_flow(s, y.s_r, M, s_lim, p.memory.m)) * (B * loading);
 }
 
-/// Right-hand side without corotational terms; `m` by memory_moduli, with limits along `direction`. Finite for P > 0 and nu_P > nu_c.
+/// Right-hand side without corotational terms; `m` by memory_moduli, with limits along `direction`. Finite for P > 0; for
+/// slopes to nu_c a little below it, too.
 template <class T>
 LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const LawState<T>& y,
                         const LawDirection& direction) {
@@ -175,7 +176,8 @@ LawState<T> memory_rate(const LawModuli<T>& m, const LawParameters<T>& p, const 
   const T remembered = 1.0 + y.E.template cast<T>().dot(N);
   const Deviator<T> loading = memory_flow(s, y.s_r, N, s_lim, T(1.0 + (p.memory.m - 1.0) * remembered * remembered));
   const T A1 = (2.0 / 3.0) * (p.memory.a_P * B * y.F.dot(N) - y.sigma.dot(N));
-  const T DG = p.memory.G * pow(nu_P / p.isotropic.pressure.nu_c - 1.0, p.memory.alpha);
+  const T above = nu_P / p.isotropic.pressure.nu_c - 1.0;  // below zero in a law whose nu_c was moved, for slopes
+  const T DG = above > 0.0 ? T(p.memory.G * pow(above, p.memory.alpha)) : T(0.0);
   const T taken = B * std::max(direction.dx, 0.0) * (s - y.F * p.memory.a2).dot(N), added = DG * direction.de;
   const T q = !(taken > 0.0) ? T(1.0) : taken < added ? T(1.0 - taken / added) : T(0.0);
   const Deviator<T> flow = N + (loading - N) * q;

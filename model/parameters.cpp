@@ -29,7 +29,7 @@ LawParameters<double> published_parameters() {
 LawParameters<double> published_parameters(const std::string& mode) {
   LawParameters<double> p = published_parameters();
   if (mode == "UNI") p.isotropic = {{8.3700, 0.5998, 0.6625}, {0.1507, 15.6835}, {0.04006, 0.03270, 0.6619}};
-  if (mode == "D3") p.steady = {{7.9289, 0.5764, 0.6603}, {0.1327, 14.6813}, {0.03899, 0.02819, 0.6583}};
+  if (mode.starts_with("D3")) p.steady = {{7.9289, 0.5764, 0.6603}, {0.1327, 14.6813}, {0.03899, 0.02819, 0.6583}};
   return p;
 }
 

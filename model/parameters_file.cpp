@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
+#include "model/files/digest.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/one_line.hpp"
 #include "model/files/path_json.hpp"
@@ -132,6 +134,11 @@ OrderedJson parameters_to_json(const ParametersFile& parameters) {
   if (!law.dataset_digest.empty()) document["dataset_digest"] = law.dataset_digest;
   if (!parameters.provenance.is_null()) document["provenance"] = OrderedJson(parameters.provenance);
   return document;
+}
+
+std::string law_digest(CalibratedLaw law) {
+  law.rehearsals.clear();
+  return sha256(parameters_to_json({std::move(law), {}}).dump());
 }
 
 ParametersFile parameters_from_json(const Json& document, const std::string& name) {

@@ -2,6 +2,7 @@
 // parameters.json: the calibrated law as others read it. Doubles bit for bit; null where a parameter is not identified.
 
 #include <filesystem>
+#include <string>
 
 #include "model/calibrated_law.hpp"
 #include "model/files/json_document.hpp"
@@ -18,6 +19,9 @@ OrderedJson parameters_to_json(const ParametersFile& parameters);
 
 /// `name` stands for the document in messages. Throws InvalidInput naming key and value.
 ParametersFile parameters_from_json(const Json& document, const std::string& name);
+
+/// SHA-256 of the law itself, whatever was rehearsed since and whoever wrote the file: of its document without these.
+std::string law_digest(CalibratedLaw law);
 
 void write_parameters(const std::filesystem::path& file, const ParametersFile& parameters);
 

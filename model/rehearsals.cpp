@@ -9,9 +9,8 @@
 namespace grainlaw {
 namespace {
 
-constexpr double kNoStrain = 1e-9;  // strain per unit of the path parameter that is none
-constexpr double kNoTurn = 1e-6;    // 1 - <N, N before> by rounding
-constexpr double kSlack = 1e-3;     // of densities and strains that are as good as rehearsed
+constexpr double kNoTurn = 1e-6;  // 1 - <N, N before> by rounding
+constexpr double kSlack = 1e-3;   // of densities and strains that are as good as rehearsed
 
 const RehearsedRung* rung_of(const Rehearsal& rehearsal, Rung rung) {
   const auto found = std::ranges::find(rehearsal.rungs, rung, &RehearsedRung::rung);
@@ -31,8 +30,8 @@ PathTraits traits_of(const std::vector<StraightSegment>& path) {
     traits.nu_max = std::max(traits.nu_max, nu);
     traits.eps_dev = std::max(traits.eps_dev, deviatoric_norm(segment.strain(segment.length).tensor));
     traits.shear_path += segment.eps_dev_rate() * segment.length;
-    const LawDirection direction = law_direction(segment.direction);
-    traits.expands = traits.expands || direction.dx < -kNoStrain;
+    const LawDirection direction = path_direction(segment.direction.tensor);
+    traits.expands = traits.expands || direction.dx < -kPathNoise * direction.de;
     if (!(direction.de > 0)) continue;
     if (N.isZero()) {
       traits.lode_min = traits.lode_max = direction.lode;
@@ -65,19 +64,6 @@ ErrorUnits error_units(const LawParameters<double>& parameters, double nu) {
 
 const RehearsedQuantity& RehearsedRung::of(Rehearsed quantity) const {
   return quantity == Rehearsed::P_star ? P_star : quantity == Rehearsed::s_par ? s_par : F_par;
-}
-
-bool same_but_axes(const std::vector<StraightSegment>& a, std::vector<StraightSegment> b) {
-  std::array<int, 3> axes{0, 1, 2};
-  const std::vector<StraightSegment> given = b;
-  do {
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      b[i].direction.tensor = given[i].direction.tensor(axes, axes);
-      b[i].spin = given[i].spin(axes, axes);
-    }
-    if (same_path(a, b)) return true;
-  } while (std::ranges::next_permutation(axes).found);
-  return false;
 }
 
 Spokesmen spokesmen_for(const std::vector<StraightSegment>& path, const std::vector<Rehearsal>& rehearsals) {

@@ -87,9 +87,6 @@ struct Rehearsal {
 /// All but the path, which stands beside them in files.
 GRAINLAW_SOME_FIELDS(Rehearsal, name, kind, traits, packings, rungs);
 
-/// Whether two paths are one for the law, however their axes are called.
-bool same_but_axes(const std::vector<StraightSegment>& a, std::vector<StraightSegment> b);
-
 /// Those that speak for a path: of its kind where there are enough, else all; never the path itself.
 struct Spokesmen {
   PathKind kind = PathKind::monotone;  ///< of the path

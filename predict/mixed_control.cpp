@@ -316,6 +316,12 @@ Prediction predict_by_law(Rung rung, const LawParameters<double>& parameters, Co
     ControlledWalk first(parameters, rung, coupling, segment, path.nu, from, P_floor, tolerances);
     const Arrival end = first.to(first.farthest());
     if (end.kind == Arrival::Kind::failed) fail(k, from, path.nu, end.message);
+    if (end.kind == Arrival::Kind::reached && first.state().nu(path.nu) > kMaxVolumeFraction)
+      fail(k, first.state(), path.nu,
+           fmt::format(
+               "{} = {} is not reached up to nu = {}, beyond which no packing is; if it lies behind the start, set "
+               "\"reverse\"",
+               to_string(segment.extent_kind), segment.extent, kMaxVolumeFraction));
     if (end.kind == Arrival::Kind::reached)
       fail(k, first.state(), path.nu,
            fmt::format("{} = {} is not reached within a strain of {}; give another extent or direction",

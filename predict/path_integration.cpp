@@ -192,10 +192,17 @@ void PathIntegration::move_jammed(double e) {
     if (!started_) solver_.start(e_start_, y, std::min(segment.length, jammed_until_), flat(slopes));
     started_ = true;
     const Arrival arrival = solver_.advance(target, y);
+    // close to jamming slopes are endless, the law is not
+    if (arrival.kind == Arrival::Kind::failed && !slopes_.empty()) {
+      slopes_.clear();
+      start_from(state_);
+      return;
+    }
     if (arrival.kind == Arrival::Kind::failed) {
-      throw NotConverged(fmt::format(
-          "segments[{}] at path parameter e = {:.9g} of {:.9g}, nu = {:.9g}: {}; give another tolerance or method",
-          index_, arrival.t, segment.length, segment.nu(arrival.t), arrival.message));
+      throw NotConverged(
+          fmt::format("segments[{}] at path parameter e = {:.9g} of {:.9g}, nu = {:.9g}: {}; end the segment before "
+                      "that, or take another rung",
+                      index_, arrival.t, segment.length, segment.nu(arrival.t), arrival.message));
     }
     if (arrival.t > e_) events_in_place_ = 0;
     e_ = arrival.t;
@@ -212,7 +219,7 @@ void PathIntegration::take_event() {
   if (++events_in_place_ > kMostEventsInPlace) {
     throw NotConverged(
         fmt::format("segments[{}] at path parameter e = {:.9g}, nu = {:.9g}: events follow each other "
-                    "without end; give a tighter tolerance",
+                    "without end; end the segment before that, or take another rung",
                     index_, e_, law_->segment().nu(e_)));
   }
   // the root is found to rounding, on either side

@@ -100,21 +100,27 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
   for (const Rung model : kRungs) {
     for (const Initial initial : kValues<Initial>) {
       CurveComparison mean{model, initial, std::nullopt, {"mean", {}}};
-      double seeds = 0;
+      bool any = false;
+      std::vector<std::array<double, kMeans.size()>> seeds;  // that have the number, by quantity
       for (const CurveComparison& entry : comparisons) {
         if (entry.model != model || entry.initial != initial || !entry.seed) continue;
-        seeds += 1;
+        any = true;
         auto& sums = mean.comparison.quantities;
         if (sums.empty()) {
           QuantityComparison none;
           none.coverage_mean = none.coverage_single = 0;
           sums.resize(entry.comparison.quantities.size(), none);
+          seeds.resize(sums.size());
         }
         for (std::size_t i = 0; i < sums.size(); ++i) {
           const QuantityComparison& q = entry.comparison.quantities.at(i);
           sums[i].quantity = q.quantity;
           sums[i].rows += q.rows;
-          for (const auto value : kMeans) sums[i].*value += q.*value;
+          for (std::size_t v = 0; v < kMeans.size(); ++v) {
+            if (!std::isfinite(q.*kMeans[v])) continue;  // a run may not tell it
+            sums[i].*kMeans[v] += q.*kMeans[v];
+            seeds[i][v] += 1;
+          }
           if (std::abs(q.largest) >= std::abs(sums[i].largest)) {
             sums[i].largest = q.largest;
             sums[i].largest_at_eps_dev = q.largest_at_eps_dev;
@@ -122,9 +128,10 @@ std::vector<CurveComparison> mean_over_seeds(const std::vector<CurveComparison>&
           }
         }
       }
-      if (seeds == 0) continue;
-      for (QuantityComparison& q : mean.comparison.quantities) {
-        for (const auto value : kMeans) q.*value /= seeds;
+      if (!any) continue;
+      for (std::size_t i = 0; i < seeds.size(); ++i) {
+        for (std::size_t v = 0; v < kMeans.size(); ++v)  // NaN of none
+          mean.comparison.quantities[i].*kMeans[v] /= seeds[i][v];
       }
       means.push_back(mean);
     }

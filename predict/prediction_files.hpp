@@ -105,7 +105,7 @@ struct PredictionFolder {
   std::vector<FailedCurve> failures;
   std::optional<Dataset> dem;  ///< the runs in dem/
   std::vector<CurveComparison> comparisons;
-  Json parameters;  ///< file, sha256, dataset_digest of the parameters used
+  Json parameters;  ///< file, sha256, law_sha256, dataset_digest of the parameters used
   Json provenance;
 };
 

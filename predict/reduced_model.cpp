@@ -14,6 +14,8 @@
 namespace grainlaw::predict {
 namespace {
 
+constexpr double kNoCorner = 1e-3;  // between unit directions
+
 /// sigma'/P and F' at a corner.
 struct Ratios {
   Deviator<double> q = Deviator<double>::Zero(), F = Deviator<double>::Zero();
@@ -43,11 +45,17 @@ class ReducedForm {
       : p_(parameters), nu_c_(parameters.isotropic.pressure.nu_c), corner_{start.sigma / start.P, start.F} {}
 
   void enter(const StraightSegment& segment, int index) {
-    if (segment_) leave();
+    const Eigen::Matrix3d L = segment.direction.tensor + segment.spin, unit = L / L.norm();
+    if (segment_ != nullptr && (unit - leg_).norm() <= kNoCorner) {  // one leg in parts
+      from_ = (from_ - segment_->length) * (segment_->direction.tensor + segment_->spin).norm() / L.norm();
+    } else {
+      if (segment_) leave();
+      from_ = 0;
+      leg_ = unit;
+    }
     segment_ = &segment;
     index_ = index;
-    direction_ = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
-    from_ = 0;
+    direction_ = path_direction(L);
     // nu passes nu_c once in a segment, down where it was jammed and up where it was not
     crossing_ = std::max(std::log(nu_c_ / segment.nu_start) / direction_.dx, 0.0);
     crosses_ = (jammed_ ? direction_.dx < 0 : direction_.dx > 0) && crossing_ <= segment.length;
@@ -88,10 +96,11 @@ class ReducedForm {
 
   const LawParameters<double>& p_;
   double nu_c_;
-  Ratios corner_;  // at from_ of the segment
+  Ratios corner_;  // at from_ of the segment, below zero where the leg began before it
   bool jammed_ = true;
   const StraightSegment* segment_ = nullptr;
   int index_ = 0;
+  Eigen::Matrix3d leg_ = Eigen::Matrix3d::Zero();  // direction at the last corner
   LawDirection direction_;
   double from_ = 0, e_ = 0;
   double crossing_ = 0;   // where nu passes nu_c,

@@ -78,9 +78,10 @@ RehearsedRows rehearse(const CalibratedLaw& law, Rung rung, const RehearsalRuns&
         value.differences.push_back(runs.runs[r].rows[i].*kComparedQuantities[q].measured -
                                     kComparedQuantities[q].predicted(of_runs[r].rows[i]));
       }
-      // slopes end where the place of an event moves: the rows behind have no band and do not count
-      const bool defined = std::isfinite(value.variance) && value.weight > 0 &&
-                           std::ranges::all_of(value.differences, [](double d) { return std::isfinite(d); });
+      // slopes end where the place of an event moves: what is behind is the law's error, none of which is put down to chance
+      if (!std::isfinite(value.variance)) value.variance = value.degrees_of_freedom = 0;
+      const bool defined =
+          value.weight > 0 && std::ranges::all_of(value.differences, [](double d) { return std::isfinite(d); });
       if (!defined) value.differences.clear();
     }
   }

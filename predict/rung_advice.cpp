@@ -1,16 +1,19 @@
 #include "predict/rung_advice.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace grainlaw::predict {
 namespace {
 
-constexpr double kNoticed = 0.02;   // change of pressure that a law should not miss
-constexpr double kNoStrain = 1e-9;  // strain per unit of the path parameter that is none
+constexpr double kNoticed = 0.02;  // change of pressure that a law should not miss
 
 }  // namespace
 
@@ -19,17 +22,16 @@ RungAdvice rung_needed(const LawParameters<double>& parameters, const std::vecto
   Deviator<double> N = Deviator<double>::Zero();
   for (std::size_t k = 0; k < segments.size(); ++k) {
     const StraightSegment& segment = segments[k];
-    const LawDirection direction = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
-    const bool volume = std::abs(direction.dx) > kNoStrain;
-    if (direction.de > 0 && direction.N.dot(N) < 0)
-      return {Rung::memory, fmt::format("segments[{}] turns the shear back", k)};
-    if (volume && (direction.de > 0 || !N.isZero()) && advice.rung == Rung::reduced)
+    const LawDirection direction = path_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
+    const bool volume = std::abs(direction.dx) > kPathNoise * direction.de, shear = direction.de > 0;
+    if (shear && direction.N.dot(N) < 0) return {Rung::memory, fmt::format("segments[{}] turns the shear back", k)};
+    if (volume && (shear || !N.isZero()) && advice.rung == Rung::reduced)
       advice = {Rung::evolution, fmt::format("segments[{}] changes the volume of a sheared state", k)};
-    if (direction.de > 0) N = direction.N;
+    if (shear) N = direction.N;
     N = rotated(N, direction.spin, segment.length);  // the state, where shear does not hold it
-    if (direction.de > 0 && direction.N.dot(N) < 0)
+    if (shear && direction.N.dot(N) < 0)
       return {Rung::memory, fmt::format("the spin of segments[{}] turns the state against its shear", k)};
-    if (volume || direction.de == 0 || advice.rung == Rung::memory) continue;
+    if (volume || !shear || advice.rung == Rung::memory) continue;
     const double P = parameters.isotropic.P_star(segment.nu_start),
                  rise = parameters.steady.P_star(segment.nu_start) / P - 1;
     if (std::abs(rise) > kNoticed)
@@ -50,15 +52,21 @@ RungRecommendation recommended_rung(const std::vector<Rehearsal>& rehearsals,
             "by what the path contains; no path was rehearsed by these rungs"};
   }
   const RungScore& best = table.front();
-  std::string why = fmt::format(
-      "best on {} rehearsals ({}), rms error of P* {:.2g} B*, stress ratio {:.2g} s_max", spokesmen.rehearsals.size(),
-      spokesmen.of_kind ? to_string(spokesmen.kind) : "of all kinds", best.rms[0], best.rms[1]);
+  std::string why =
+      fmt::format("best on {} rehearsal{} ({}), rms error of P* {:.2g} B*, stress ratio {:.2g} s_max",
+                  spokesmen.rehearsals.size(), spokesmen.rehearsals.size() == 1 ? "" : "s",
+                  spokesmen.of_kind ? to_string(spokesmen.kind) : "of all kinds", best.rms[0], best.rms[1]);
   if (best.rms[2] > 0) why += fmt::format(", fabric {:.2g} F_max", best.rms[2]);
   for (std::size_t i = 1; i < table.size(); ++i) {
-    std::array<double, 3> times{};
-    for (std::size_t q = 0; q < times.size(); ++q) times[q] = table[i].rms[q] / best.rms[q];
-    why += fmt::format("; {} errs {:.1f}, {:.1f} and {:.1f} times as much", to_string(table[i].rung), times[0],
-                       times[1], times[2]);
+    std::vector<std::string> times;
+    for (std::size_t q = 0; q < best.rms.size(); ++q) {
+      if (best.rms[q] > 0) times.push_back(fmt::format("{:.1f}", table[i].rms[q] / best.rms[q]));
+    }
+    if (times.empty()) continue;
+    const std::string last = std::exchange(times.back(), "");
+    times.pop_back();
+    why += fmt::format("; {} errs {}{}{} times as much", to_string(table[i].rung), fmt::join(times, ", "),
+                       times.empty() ? "" : " and ", last);
   }
   return {best.rung, true, why};
 }

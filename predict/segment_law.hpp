@@ -68,7 +68,7 @@ class SegmentLaw {
         rung_(rung),
         coupling_(coupling),
         segment_(&segment),
-        direction_(law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin))),
+        direction_(path_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin))),
         P_held_(P_held) {}
 
   /// Turning::rests before the first call.

@@ -94,8 +94,7 @@ void read_extent(const Json& object, PathSegment& segment) {
 void append_cycles(PathSegment leg, const Json& cycles, std::vector<PathSegment>& segments) {
   const double amplitude = cycles["amplitude"].get<double>();
   const bool one_sided = cycles.value("one_sided", false);
-  leg.extent_kind = deviatoric_norm(leg.direction.tensor) > 1e-12 * leg.direction.tensor.norm() ? ExtentKind::eps_dev
-                                                                                                : ExtentKind::eps_vol;
+  leg.extent_kind = shears(leg.direction) ? ExtentKind::eps_dev : ExtentKind::eps_vol;
   PathSegment back = leg;
   back.direction.tensor = -leg.direction.tensor;
   back.spin = -leg.spin;

@@ -36,9 +36,7 @@ Deviator<double> stress_ratio(const Observation& o) {
 
 std::optional<Misdirection> misdirection(const std::vector<Observation>& rows,
                                          const std::vector<StraightSegment>& segments, double scatter) {
-  const auto first = std::ranges::find_if(segments, [](const StraightSegment& s) {
-    return deviatoric_norm(s.direction.tensor) > 1e-12 * s.direction.tensor.norm();
-  });
+  const auto first = std::ranges::find_if(segments, shears, &StraightSegment::direction);
   if (first == segments.end() || !first->spin.isZero(0)) return std::nullopt;
   const Deviator<double> N = shear_direction(segments);
   const int index = static_cast<int>(first - segments.begin());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -228,12 +229,43 @@ std::vector<Leg> legs_of(const std::vector<StraightSegment>& path) {
   return legs;
 }
 
+bool same(const std::vector<Leg>& a, const std::vector<Leg>& b) {
+  return std::ranges::equal(
+      a, b, [](const Leg& p, const Leg& q) { return p.alike(q) && std::abs(p.nu - q.nu) <= kSameDensity; });
+}
+
+/// Axes that turn with the path. Legs have unlike weights, so that two axes are alike only where they are in all legs.
+Eigen::Matrix3d own_axes(const std::vector<Leg>& legs) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  double weight = 1;
+  for (const Leg& leg : legs) {
+    sum += weight * (leg.strain + leg.turn * leg.turn);
+    weight = 0.5 + std::fmod(weight + 0.618, 1.0);
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum).eigenvectors();
+}
+
 }  // namespace
 
 bool same_path(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b) {
-  return std::ranges::equal(legs_of(a), legs_of(b), [](const Leg& p, const Leg& q) {
-    return p.alike(q) && std::abs(p.nu - q.nu) <= kSameDensity;
-  });
+  return same(legs_of(a), legs_of(b));
+}
+
+bool same_but_axes(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b) {
+  const std::vector<Leg> of_a = legs_of(a), of_b = legs_of(b);
+  const Eigen::Matrix3d from = own_axes(of_b), to = own_axes(of_a);
+  for (int mirrored = -1; mirrored < 3; ++mirrored) {  // a tensor does not see all three
+    Eigen::Vector3d sign = Eigen::Vector3d::Ones();
+    if (mirrored >= 0) sign(mirrored) = -1;
+    const Eigen::Matrix3d Q = to * sign.asDiagonal() * from.transpose();
+    std::vector<Leg> turned = of_b;
+    for (Leg& leg : turned) {
+      leg.strain = Q * leg.strain * Q.transpose();
+      leg.turn = Q * leg.turn * Q.transpose();
+    }
+    if (same(of_a, turned)) return true;
+  }
+  return false;
 }
 
 bool same_path(const Path& a, const Path& b) {
@@ -251,10 +283,14 @@ void check(const Path& path) {
   for (std::size_t i = known; i < path.segments.size(); ++i) check_segment(path.segments[i], i);
 }
 
+bool shears(const StrainRate& direction) {
+  return deviatoric_norm(direction.tensor) > kPathNoise * std::abs(direction.tensor.trace());
+}
+
 Deviator<double> shear_direction(const std::vector<StraightSegment>& segments) {
   for (const StraightSegment& segment : segments) {
     const Deviator<double> d = -deviator<double>(segment.direction.tensor);
-    if (d.norm() > 1e-12 * segment.direction.tensor.norm()) return d / d.norm();
+    if (shears(segment.direction)) return d / d.norm();
   }
   return Deviator<double>::Zero();
 }

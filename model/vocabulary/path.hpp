@@ -87,6 +87,13 @@ struct StraightSegment {
   double eps_vol_rate() const;    ///< tr D: volumetric strain per unit of e [-]
 };
 
+/// Of shear beside volumetric strain, or the reverse: what digits of a table or an axis a little off leave of one that is meant to be
+/// none.
+inline constexpr double kPathNoise = 1e-3;
+
+/// Whether a direction shears, beyond noise.
+bool shears(const StrainRate& direction);
+
 /// Volume fractions that are one: kept states differ by rounding, packings of others by more.
 inline constexpr double kSameDensity = 1e-3;
 
@@ -94,6 +101,8 @@ inline constexpr double kSameDensity = 1e-3;
 bool same_path(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b);
 /// Likewise from the same branch; false where the law decides where one of them leads.
 bool same_path(const Path& a, const Path& b);
+/// Whether two paths are one for a law, which knows no axes: after some rotation or reflection.
+bool same_but_axes(const std::vector<StraightSegment>& a, const std::vector<StraightSegment>& b);
 
 inline constexpr double kMaxVolumeFraction = 0.9;  ///< beyond it overlaps are no small fraction of the radius any more
 

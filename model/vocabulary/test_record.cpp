@@ -9,7 +9,7 @@ const Eigen::Matrix3d* single_direction(const TestRecord& test) {
   return test.path.segments.size() == 1 ? &test.path.segments.front().direction.tensor : nullptr;
 }
 
-bool is_isotropic(const Eigen::Matrix3d& d) { return deviatoric_norm(d) <= 1e-12 * d.norm(); }
+bool is_isotropic(const Eigen::Matrix3d& d) { return !shears({d}); }
 
 std::string text_of(const ContactModel& contacts) {
   return fmt::format("{}, friction {}, rolling friction {}, cohesion {} J/m^2", to_string(contacts.normal_force),

@@ -16,6 +16,8 @@ namespace {
 
 // Above this share of P no principal stress is near zero; a step that ends below is looked at closely.
 constexpr double kClearOfTension = 0.1;
+// Of a segment, beyond which something vanishes there and who knows events goes on.
+constexpr long kMostSteps = 10'000;
 
 Eigen::Matrix3d tensor_from(const double* components) {
   Eigen::Matrix3d tensor;
@@ -65,7 +67,7 @@ class Follower {
  public:
   Follower(const LawParameters<double>& parameters, Rung rung, Coupling coupling, double accuracy)
       : parameters_(parameters), rung_(rung), coupling_(coupling), accuracy_(accuracy) {
-    if (rung != Rung::reduced) walker_.emplace(Integrator::dopri_5, accuracy, parameters, rung, coupling);
+    if (rung != Rung::reduced) walker_.emplace(Integrator::dopri_5, accuracy, parameters, rung, coupling, kMostSteps);
   }
 
   /// States at the ends of the segments.

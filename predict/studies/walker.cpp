@@ -17,7 +17,6 @@ namespace grainlaw::predict {
 namespace {
 
 constexpr double kAbsoluteShare = 1e-4;  // P* is some 1e-2
-constexpr long kMaxSteps = 10'000'000;
 
 int order_of(Integrator integrator) {
   switch (integrator) {
@@ -45,6 +44,7 @@ struct Walker::Impl {
   Rung rung;
   Coupling coupling;
   double accuracy;
+  long most_steps;
   std::optional<SegmentLaw> law;  // of the segment that is being walked
   std::optional<Cvode> cvode;
   std::optional<RungeKutta> runge_kutta;
@@ -52,7 +52,7 @@ struct Walker::Impl {
 
   Arrival advance(Unknowns& y, double length) {
     if (dormand_prince)
-      return integrate_dormand_prince(*law, y, length, {accuracy, kAbsoluteShare * accuracy, Method::adams, kMaxSteps},
+      return integrate_dormand_prince(*law, y, length, {accuracy, kAbsoluteShare * accuracy, Method::adams, most_steps},
                                       *dormand_prince);
     if (runge_kutta) return runge_kutta->integrate(0, y, length);
     cvode->start(0, y, length);
@@ -63,7 +63,7 @@ struct Walker::Impl {
   long euler(const StraightSegment& segment, LawState<double>& state) const {
     const auto n = static_cast<long>(std::ceil(segment.length * segment.direction.tensor.norm() / accuracy));
     const double h = segment.length / static_cast<double>(n);
-    const LawDirection direction = law_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
+    const LawDirection direction = path_direction(Eigen::Matrix3d(segment.direction.tensor + segment.spin));
     for (long i = 0; i < n; ++i) {
       const double nu = segment.nu(h * static_cast<double>(i));
       turn_corner(rung, state, direction);
@@ -75,7 +75,7 @@ struct Walker::Impl {
   /// The segment as predict() integrates it, through stretches where s_r follows s. Returns its statistics.
   SolverStatistics through_turns(const StraightSegment& segment, int index, LawState<double>& state) const {
     PathIntegration integration(parameters, rung, coupling, {state, {}, {}},
-                                {accuracy, kAbsoluteShare * accuracy, Method::adams, kMaxSteps});
+                                {accuracy, kAbsoluteShare * accuracy, Method::adams, most_steps});
     integration.enter(segment, index);
     integration.advance(segment.length);
     state = integration.state();
@@ -93,8 +93,8 @@ struct Walker::Impl {
 };
 
 Walker::Walker(Integrator integrator, double accuracy, const LawParameters<double>& parameters, Rung rung,
-               Coupling coupling)
-    : impl_(new Impl{parameters, rung, coupling, accuracy, {}, {}, {}, {}}) {
+               Coupling coupling, long most_steps)
+    : impl_(new Impl{parameters, rung, coupling, accuracy, most_steps, {}, {}, {}, {}}) {
   if (!(accuracy >= 1e-14 && accuracy < 1)) {
     throw InvalidInput(
         fmt::format("integrator {}: accuracy {} is outside [1e-14, 1)", to_string(integrator), accuracy));
@@ -103,12 +103,12 @@ Walker::Walker(Integrator integrator, double accuracy, const LawParameters<doubl
   const auto scale = [law = &impl_->law](double e, const double* y, double* out) { (*law)->scale(e, y, out); };
   if (integrator == Integrator::adams || integrator == Integrator::bdf) {
     const Method method = integrator == Integrator::adams ? Method::adams : Method::bdf;
-    impl_->cvode.emplace(kUnknowns, Tolerances{accuracy, kAbsoluteShare * accuracy, method, kMaxSteps}, rate,
+    impl_->cvode.emplace(kUnknowns, Tolerances{accuracy, kAbsoluteShare * accuracy, method, most_steps}, rate,
                          OdeEvent{}, scale);
   } else if (integrator == Integrator::dopri_5) {
     impl_->dormand_prince.emplace();
   } else if (integrator != Integrator::euler) {
-    impl_->runge_kutta.emplace(kUnknowns, order_of(integrator), accuracy, kAbsoluteShare * accuracy, kMaxSteps, rate,
+    impl_->runge_kutta.emplace(kUnknowns, order_of(integrator), accuracy, kAbsoluteShare * accuracy, most_steps, rate,
                                scale);
   }
 }

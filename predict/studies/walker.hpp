@@ -30,7 +30,8 @@ class Walker {
  public:
   /// `accuracy`: relative tolerance in [1e-14, 1), the absolute one being 1e-4 of it; for euler the longest substep,
   /// |strain| by the norm of its six components.
-  Walker(Integrator integrator, double accuracy, const LawParameters<double>& parameters, Rung rung, Coupling coupling);
+  Walker(Integrator integrator, double accuracy, const LawParameters<double>& parameters, Rung rung, Coupling coupling,
+         long most_steps = 10'000'000);
   ~Walker();
   Walker(const Walker&) = delete;
   Walker& operator=(const Walker&) = delete;

@@ -22,4 +22,11 @@ inline LawParameters<double> memory_parameters() {
   return p;
 }
 
+/// Eq. (16) at volume fraction `nu`.
+template <class T>
+LawState<T> evolution_rate(const LawParameters<T>& p, Coupling coupling, const LawState<T>& y, double nu,
+                           const LawDirection& direction) {
+  return grainlaw::evolution_rate(along(moduli_at(p, nu), p.lode, direction), p.anisotropy, coupling, y, direction);
+}
+
 }  // namespace grainlaw::testing

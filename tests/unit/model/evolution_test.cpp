@@ -28,7 +28,7 @@ StrainRate some_rate() {
 
 LawState<double> rate_along(const LawParameters<double>& p, Coupling coupling, const LawState<double>& y, double nu,
                             const StrainRate& rate) {
-  return evolution_rate(p, coupling, y, nu, law_direction(rate));
+  return testing::evolution_rate(p, coupling, y, nu, law_direction(rate));
 }
 
 /// Everything along one direction: y = (P, sigma N, F N).
@@ -59,7 +59,7 @@ TEST(Evolution, TensorFormIsTheInvariantFormOnCoaxialPaths) {
           const double P = 1.1 * p.isotropic.P_star(nu), sigma = 0.07 * P, F = 0.05, de = 1.7;
           const Deviator<double> N0 = law_direction(direction_of(Mode::D3)).N;
           const LawDirection direction{dx, de, sg * N0};
-          const LawState<double> r = evolution_rate(p, coupling, coaxial(P, sigma, F, N0), nu, direction);
+          const LawState<double> r = testing::evolution_rate(p, coupling, coaxial(P, sigma, F, N0), nu, direction);
 
           const double nu_c = p.shear_nu_c, B = p.isotropic.B_star(nu);
           const double s_max = p.stress_ratio_max.value(nu, nu_c), DG = p.stress_rate.value(nu, nu_c) * s_max * P;
@@ -83,7 +83,7 @@ TEST(Evolution, WithoutCouplingItIsEquations17And18) {
   p.anisotropy.a0 = 0;
   const LawDirection shear = law_direction(direction_of(Mode::D2));
   const double nu = 0.70, P = 0.016, s = 0.1, F = 0.08;
-  const LawState<double> r = evolution_rate(p, Coupling::single, coaxial(P, s * P, F, shear.N), nu, shear);
+  const LawState<double> r = testing::evolution_rate(p, Coupling::single, coaxial(P, s * P, F, shear.N), nu, shear);
   EXPECT_EQ(r.P, 0);
   const double beta_s = p.stress_rate.value(nu, p.shear_nu_c), s_max = p.stress_ratio_max.value(nu, p.shear_nu_c);
   EXPECT_NEAR(r.sigma.dot(shear.N) / P, beta_s * (s_max - s) * shear.de, 1e-13);
@@ -110,8 +110,9 @@ TEST(Evolution, EnergyCouplingHasEqualMixedDerivatives) {
         const Deviator<double> N = law_direction(direction_of(Mode::D2)).N;
         const double P = p.isotropic.P_star(nu);
         const LawState<double> y = coaxial(P, sigma, F, N);
-        const LawState<double> shear = evolution_rate(p, Coupling::energy, y, nu, {0, 1, N});
-        const LawState<double> iso = evolution_rate(p, Coupling::energy, y, nu, {1, 0, Deviator<double>::Zero()});
+        const LawState<double> shear = testing::evolution_rate(p, Coupling::energy, y, nu, {0, 1, N});
+        const LawState<double> iso =
+            testing::evolution_rate(p, Coupling::energy, y, nu, {1, 0, Deviator<double>::Zero()});
         const double S = 1 - sigma / (P * p.stress_ratio_max.value(nu, p.shear_nu_c));
         const double A1 = shear.P / S, A2 = iso.sigma.dot(N);
         EXPECT_NEAR(A1, 2.0 / 3 * (A2 - sigma), 1e-15);
@@ -126,9 +127,9 @@ TEST(Evolution, SingleCouplingIsThePrintedOne) {
   const LawParameters<double> p = testing::coupled_parameters();
   const Deviator<double> N = law_direction(direction_of(Mode::D2)).N;
   const LawState<double> y = coaxial(0.02, 0, 0.09, N);
-  EXPECT_NEAR(evolution_rate(p, Coupling::single, y, 0.7, {0, 1, N}).P, 0.137 * 0.09, 1e-16);
-  EXPECT_NEAR(evolution_rate(p, Coupling::single, y, 0.7, {3, 0, Deviator<double>::Zero()}).sigma.dot(N), 0.137 * 0.09,
-              1e-16);
+  EXPECT_NEAR(testing::evolution_rate(p, Coupling::single, y, 0.7, {0, 1, N}).P, 0.137 * 0.09, 1e-16);
+  EXPECT_NEAR(testing::evolution_rate(p, Coupling::single, y, 0.7, {3, 0, Deviator<double>::Zero()}).sigma.dot(N),
+              0.137 * 0.09, 1e-16);
 }
 
 TEST(Evolution, RateTurnsWithTheExperiment) {
@@ -155,8 +156,8 @@ TEST(Evolution, ReversingShearReversesTheOddParts) {
   const LawState<double> y = memoryless_state(), mirrored{y.P, -y.sigma, -y.F};
   const LawDirection d = law_direction(some_rate()), back{d.dx, d.de, -d.N};
   for (const Coupling coupling : kCouplings) {
-    const LawState<double> a = evolution_rate(p, coupling, y, 0.7, d),
-                           b = evolution_rate(p, coupling, mirrored, 0.7, back);
+    const LawState<double> a = testing::evolution_rate(p, coupling, y, 0.7, d),
+                           b = testing::evolution_rate(p, coupling, mirrored, 0.7, back);
     EXPECT_NEAR(a.P, b.P, 1e-16);
     EXPECT_LE((a.sigma + b.sigma).norm(), 1e-16);
     EXPECT_LE((a.F + b.F).norm(), 1e-15);
@@ -182,7 +183,7 @@ TEST(Evolution, OtherScalarGivesTheSameRate) {
   const LawState<long double> wide{y.P, y.sigma.cast<long double>(), y.F.cast<long double>()};
   for (const Coupling coupling : kCouplings) {
     const auto a = rate_along(p, coupling, y, 0.7, some_rate());
-    const auto b = evolution_rate(cast<long double>(p), coupling, wide, 0.7, law_direction(some_rate()));
+    const auto b = testing::evolution_rate(cast<long double>(p), coupling, wide, 0.7, law_direction(some_rate()));
     EXPECT_NEAR(a.P, static_cast<double>(b.P), 1e-14 * std::abs(a.P));
     EXPECT_LE((a.sigma - b.sigma.cast<double>()).norm(), 1e-14 * a.sigma.norm());
     EXPECT_LE((a.F - b.F.cast<double>()).norm(), 1e-14 * a.F.norm());

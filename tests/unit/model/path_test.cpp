@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -215,6 +216,43 @@ TEST(Path, NamesOfModesAndBranches) {
   EXPECT_EQ(to_string(Mode::ISO) + to_string(Mode::UNI) + to_string(Mode::D2) + to_string(Mode::D3), "ISOUNID2D3");
   EXPECT_EQ(to_string(Branch::loading), "loading");
   EXPECT_EQ(to_string(Branch::unloading), "unloading");
+}
+
+TEST(Path, IsOneForALawHoweverItsAxesAreTurned) {
+  const auto turned = [](std::vector<StraightSegment> path, const Eigen::Matrix3d& Q) {
+    for (StraightSegment& segment : path) {
+      segment.direction.tensor = Q * segment.direction.tensor * Q.transpose();
+      segment.spin = Q * segment.spin * Q.transpose();
+    }
+    return path;
+  };
+  const auto path = [](const std::vector<PathSegment>& segments) {
+    return resolve(Path{0.70, Branch::unloading, segments});
+  };
+  Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity();
+  mirror(0, 0) = -1;
+  std::vector<Eigen::Matrix3d> turns{mirror};
+  for (const double angle : {0.3, 0.785398, 1.2, 2.9})
+    turns.emplace_back(Eigen::AngleAxisd(angle, Eigen::Vector3d(1, angle, -2).normalized()).toRotationMatrix());
+  PathSegment spinning = segment(Mode::D2, ExtentKind::eps_dev, 0.1), sheared = spinning;
+  spinning.spin << 0, 0.2, 0, -0.2, 0, 0.1, 0, -0.1, 0;
+  sheared.mode = Mode::tensor;
+  sheared.direction.tensor << 0, 0, 1, 0, 0, 0, 1, 0, 0;
+  const std::vector<std::vector<StraightSegment>> paths{
+      path({segment(Mode::D2, ExtentKind::eps_dev, 0.1)}),
+      path({segment(Mode::D3, ExtentKind::eps_dev, 0.1)}),
+      path({segment(Mode::ISO, ExtentKind::target_nu, 0.75)}),
+      path({segment(Mode::D3, ExtentKind::eps_dev, 0.1), segment(Mode::D3, ExtentKind::eps_dev, 0.1, true)}),
+      path({segment(Mode::D3, ExtentKind::eps_dev, 0.1), segment(Mode::D2, ExtentKind::eps_dev, 0.1)}),
+      path({segment(Mode::D2, ExtentKind::eps_dev, 0.1), sheared}),
+      path({spinning})};
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    for (const Eigen::Matrix3d& Q : turns) {
+      for (std::size_t j = 0; j < paths.size(); ++j)
+        EXPECT_EQ(same_but_axes(paths[j], turned(paths[i], Q)), i == j) << i << " " << j;
+    }
+  }
+  EXPECT_TRUE(same_but_axes(paths[0], path({sheared}))) << "D2 by another base";
 }
 
 }  // namespace

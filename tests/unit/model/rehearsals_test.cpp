@@ -139,5 +139,26 @@ TEST(Rehearsals, ScoresAreRelativeToTheBestInEachQuantity) {
   EXPECT_TRUE(scores(spokesmen_for(path_from(0.8, {leg(Mode::D2, 0.2)}), paths), {Rung::memory}).empty());
 }
 
+TEST(Rehearsals, NoiseOfATableIsNoTurnAndNoExpansion) {
+  const auto traits = [](const Eigen::Matrix3d& D, ExtentKind kind = ExtentKind::eps_dev) {
+    return traits_of(path_from(0.75, {leg(Mode::D3, 0.2), {Mode::tensor, {D}, kind, 0.05}}));
+  };
+  const PathTraits pure = traits(-Eigen::Matrix3d::Identity(), ExtentKind::eps_vol);
+  for (const double noise : {1e-8, -1e-8, 1e-5, -1e-5}) {
+    Eigen::Matrix3d D = -Eigen::Matrix3d::Identity();
+    D.diagonal() += noise * Eigen::Vector3d(1, -2, 1);
+    const PathTraits noisy = traits(D, ExtentKind::eps_vol);
+    EXPECT_EQ(noisy.turns, pure.turns) << noise;
+    EXPECT_EQ(noisy.reversals, pure.reversals) << noise;
+    EXPECT_EQ(noisy.lode_min, pure.lode_min) << noise;
+    Eigen::Matrix3d shear = Eigen::Vector3d(0.5, 0.5, -1).asDiagonal();
+    shear += noise * Eigen::Matrix3d::Identity();
+    EXPECT_FALSE(traits(shear).expands) << noise;
+  }
+  Eigen::Matrix3d expands = Eigen::Vector3d(1, 0, -0.9).asDiagonal();
+  EXPECT_TRUE(traits(expands).expands);
+  EXPECT_TRUE(traits(1e-10 * expands).expands) << "whatever the unit of its rates";
+}
+
 }  // namespace
 }  // namespace grainlaw

@@ -167,5 +167,18 @@ TEST(Bands, AreNoneWithoutErrors) {
   }
 }
 
+TEST(Bands, AMemoryThatUnjamsKeepsItsCurveAndTheBandsBeforeThat) {
+  const CalibratedLaw law = with_errors({"pressure.nu_c"}, Eigen::MatrixXd::Constant(1, 1, 1e-8), 4);
+  for (const double nu : {0.67, 0.675, 0.68, 0.69}) {
+    const auto path = testing::path_from(nu, {testing::leg_to(Mode::UNI, 0.65, true)});
+    const Prediction prediction = predict_with_bands(Rung::memory, law, path, state_from_law(law.parameters, nu), true,
+                                                     uniform_points(path, 40), {});
+    EXPECT_TRUE(prediction.unjammed);
+    EXPECT_GT(prediction.rows[5].mean.P, 0) << nu;
+    EXPECT_EQ(prediction.rows.size(), 41u);
+    EXPECT_TRUE(std::isnan(prediction.rows.back().mean.P)) << "where it has none";
+  }
+}
+
 }  // namespace
 }  // namespace grainlaw::predict

@@ -333,5 +333,24 @@ TEST(Predict, NamesOfModels) {
   EXPECT_EQ(to_string(Rung::evolution), "evolution");
 }
 
+TEST(Reduced, ALegInPartsIsOneLeg) {
+  const LawParameters<double> p = published_parameters();
+  const auto end_of = [&](const std::vector<PathSegment>& segments) {
+    const auto path = testing::path_from(0.70, segments);
+    return predict(Rung::reduced, p, Coupling::energy, path, state_from_law(p, 0.70), uniform_points(path, 2), {}, {},
+                   {})
+        .rows.back();
+  };
+  const PredictedRow whole = end_of({testing::leg_to(Mode::UNI, 0.80)});
+  std::vector<PathSegment> parts;
+  for (int i = 1; i <= 10; ++i) parts.push_back(testing::leg_to(Mode::UNI, 0.70 + 0.01 * i));
+  parts[4].direction.tensor *= 7;  // at another rate
+  const PredictedRow in_parts = end_of(parts);
+  EXPECT_NEAR(in_parts.F_par, whole.F_par, 1e-12);
+  EXPECT_NEAR(in_parts.s_par, whole.s_par, 1e-12);
+  parts[5] = leg(Mode::D2, 0.01);
+  EXPECT_GT(std::abs(end_of(parts).F_par - whole.F_par), 1e-3) << "a turn is a corner";
+}
+
 }  // namespace
 }  // namespace grainlaw::predict

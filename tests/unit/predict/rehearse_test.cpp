@@ -106,5 +106,32 @@ TEST(Rehearse, RefusesRunsOfSeveralPaths) {
             std::string::npos);
 }
 
+TEST(Rehearse, RowsCountWhereTheLawUnjamsBeforeTheRuns) {
+  const CalibratedLaw law = law_with_errors();
+  const Path path{0.68, Branch::unloading, {testing::leg_to(Mode::UNI, 0.65, true)}};
+  const auto segments = resolve(path);
+  const Prediction curve = predict(Rung::reduced, law.parameters, law.coupling, segments,
+                                   state_from_law(law.parameters, path.nu), uniform_points(segments, 40), {}, {}, {});
+  ASSERT_TRUE(curve.unjammed);
+  RehearsalRuns runs{"unjams", {{}}, false};
+  runs.runs[0].name = "unjams-s1";
+  runs.runs[0].path = path;
+  int counted = 0;
+  for (const PredictedRow& row : curve.rows) {
+    Observation& o = runs.runs[0].rows.emplace_back();
+    o.time = row.shear_path;
+    o.strain = row.strain;
+    o.nu = row.nu;
+    o.shear_path = row.shear_path;
+    o.P_star = row.state.P + 0.01 * error_units(law.parameters, row.nu).B;  // carries on where the law has nothing left
+    o.s_par = o.F_par = 0.1;
+    counted += row.shear_path >= 0.01;
+  }
+  std::vector<std::string> failures;
+  const RehearsedQuantity P = rehearsal_of(law, {Rung::reduced}, runs, {}, failures).rungs.at(0).P_star;
+  EXPECT_EQ(P.rows, counted) << "the rung that unjams first is not judged by fewer rows";
+  EXPECT_NEAR(P.square, 1e-4, 1e-10);
+}
+
 }  // namespace
 }  // namespace grainlaw::predict

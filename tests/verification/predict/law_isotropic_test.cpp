@@ -93,7 +93,7 @@ TEST(Isotropic, O3BulkModulusIntegratesToEquation14) {
     predict::Cvode solver(1, {1e-10, 1e-14, method}, [&](double x, const double*, double* rate) {
       const LawState<double> state{1, Deviator<double>::Zero(), Deviator<double>::Zero()};
       const LawDirection direction{sense, 0, Deviator<double>::Zero()};
-      rate[0] = evolution_rate(p, Coupling::energy, state, from * std::exp(sense * x), direction).P;
+      rate[0] = testing::evolution_rate(p, Coupling::energy, state, from * std::exp(sense * x), direction).P;
     });
     std::array<double, 1> P{p.isotropic.P_star(kLow)};
     for (const bool unloading : {false, true}) {

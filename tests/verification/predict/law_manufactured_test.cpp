@@ -13,6 +13,7 @@
 #include "predict/segment_law.hpp"
 #include "predict/solvers/cvode.hpp"
 #include "tests/support/figure.hpp"
+#include "tests/support/law_parameters.hpp"
 #include "tests/support/law_path.hpp"
 #include "tests/support/table.hpp"
 #include "tests/support/tolerance_study.hpp"
@@ -84,8 +85,8 @@ ErrorOfSolution integrate(const LawParameters<double>& p, const LawParameters<do
   const SegmentLaw law(p, Rung::evolution, coupling, segment, 0);
   const auto rate = [&](double e, const double* y, double* out) {
     law.rate(e, y, out);
-    const LawState<double> source =
-        difference(exact.slope(e), evolution_rate(of_sources, coupling, exact.at(e), segment.nu(e), direction));
+    const LawState<double> source = difference(
+        exact.slope(e), testing::evolution_rate(of_sources, coupling, exact.at(e), segment.nu(e), direction));
     // The unknowns are an affine function of the state.
     const Unknowns with = law.unknowns_of(e, source),
                    without = law.unknowns_of(e, {0, Deviator<double>::Zero(), Deviator<double>::Zero()});
