@@ -33,9 +33,13 @@ void remove_results_of_others(const fs::path& output, const std::string& spec) {
 /// Refuses before anything runs what no fit can be made of.
 void check_tests(const std::vector<TestRecord>& tests, const std::string& name) {
   const auto missing = [&](const char* what, const char* mode) {
+    const auto in_parts = std::ranges::find_if(tests, [](const TestRecord& t) { return t.path.segments.size() > 1; });
     throw InvalidInput(
-        fmt::format("{}: tests: none of role calibration is {}; add {{\"mode\": \"{}\", \"role\": \"calibration\"}}",
-                    name, what, mode));
+        fmt::format("{}: tests: none of role calibration is {}; add {{\"mode\": \"{}\", \"role\": \"calibration\"}}{}",
+                    name, what, mode,
+                    in_parts == tests.end() ? ""
+                                            : fmt::format(", or split: such a test is one segment, {} has {}",
+                                                          in_parts->name, in_parts->path.segments.size())));
   };
   if (std::none_of(tests.begin(), tests.end(), is_isotropic_unloading)) missing("an isotropic unloading", "ISO");
   if (std::none_of(tests.begin(), tests.end(), is_pure_shear)) missing("a shear at constant volume", "D2");
@@ -129,8 +133,10 @@ void save(const Fitted& all, const fit::CalibrationOptions& options, const fs::p
   write_calibration(output / "calibration.json", all.calibration, options, all.modes, origin);
   write_parameters(output / "parameters.json", {all.calibration.law, Json(origin)});
   for (const fit::Stage& stage : all.calibration.stages) {
-    if (!stage.converged)
-      execution.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
+    if (stage.converged) continue;
+    std::string why = stage.termination;
+    if (why.starts_with("CONVERGENCE: ")) why = "the gradient does not vanish; " + why.substr(13);
+    execution.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, why));
   }
   for (const std::string& warning : all.calibration.warnings) execution.watch.log("warning: " + warning);
 }

@@ -152,7 +152,12 @@ void tie_errors(CalibratedLaw& law) {
 }
 
 bool all_converged(const Calibration& calibration) {
-  return std::ranges::all_of(calibration.stages, &Stage::converged);
+  const auto withdrawn = [&](const NamedEstimate& of) {
+    return calibration.law.estimates[parameter_index(of.name)].status == Status::not_identified;
+  };
+  return std::ranges::all_of(calibration.stages, [&](const Stage& stage) {
+    return stage.converged || (!stage.estimates.empty() && std::ranges::all_of(stage.estimates, withdrawn));
+  });
 }
 
 }  // namespace grainlaw::fit

@@ -57,6 +57,8 @@ bool same_series(const TestRecord& a, const TestRecord& b) {
 
 /// Six doubles that no two packings have in common by chance.
 using StressKey = std::array<double, 6>;
+constexpr double kSameSize = 1e-4;  // of the mean radius of a packing as two files say it
+
 struct Place {
   const TestRecord* test;
   std::size_t row;
@@ -84,10 +86,18 @@ void check_independence(const TestRecord& test, std::map<StressKey, Place>& seen
   }
 }
 
-bool shears(const TestRecord& test) {
-  return std::ranges::any_of(test.path.segments, [](const PathSegment& s) {
-    return deviatoric_norm(s.direction.tensor) > 1e-12 * s.direction.tensor.norm();
-  });
+/// Refuses two packings of one seed, which would count as one.
+void check_packing(const TestRecord& test, const TestRecord& other) {
+  const PackingInfo &a = test.packing, &b = other.packing;
+  const auto differ = [](double x, double y) { return x > 0 && y > 0 && std::abs(x - y) > kSameSize * std::max(x, y); };
+  if (a.seed != b.seed || (!differ(a.mean_radius, b.mean_radius) &&
+                           !differ(static_cast<double>(a.particles), static_cast<double>(b.particles))))
+    return;
+  refuse(test,
+         fmt::format(
+             "seed {} is that of test {}, too, but the packing is another: {} spheres of mean radius {} m, there {} "
+             "of {} m; give each packing a seed of its own",
+             a.seed, other.name, a.particles, a.mean_radius, b.particles, b.mean_radius));
 }
 
 }  // namespace
@@ -107,7 +117,7 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
     const TestRecord& test = tests[i];
     check_test(test, role);
     for (std::size_t j = 0; j < i; ++j)
-      check_material(test, tests[j]);  // of those that do not tell, each agrees with all
+      check_material(test, tests[j]), check_packing(test, tests[j]);  // those that do not tell agree with all
     if (!names.insert(test.name).second) refuse(test, "this name is given twice; rename one of the tests");
     for (std::size_t j = 0; j < i; ++j) {
       if (same_series(test, tests[j])) {
@@ -119,7 +129,7 @@ DataSet check_and_sort(const std::vector<TestRecord>& tests, Role role) {
       data.isotropic.push_back(&test);
     else if (is_pure_shear(test))
       data.pure_shear.push_back(&test);
-    else if (shears(test))
+    else if (std::ranges::any_of(test.path.segments, shears, &PathSegment::direction))
       data.other.push_back(&test);
     else
       data.unused.push_back(test.name);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -112,10 +113,16 @@ std::string verdict_within(double difference, double range, double matters) {
   return std::abs(difference) > range ? "differs" : range <= matters ? "agrees" : "inconclusive";
 }
 
-/// The first segment of the test is `mode` in its forward sense.
-bool compresses_z(const TestRecord& test, Mode mode) {
+/// Of the principal axes, ascending.
+Eigen::Vector3d principal(const Eigen::Matrix3d& tensor) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(tensor, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+/// The first segment of the test is `mode` in its forward sense, along whatever axes.
+bool goes_forward(const TestRecord& test, Mode mode) {
   const PathSegment& segment = test.path.segments.front();
-  return segment.mode == mode && segment.direction.tensor(2, 2) < 0;
+  const Eigen::Vector3d own = principal(segment.direction.tensor), wanted = principal(direction_of(mode).tensor);
+  return segment.mode == mode && (own.normalized() - wanted.normalized()).norm() < kExactStrain;
 }
 
 void add_kinematics(const std::vector<TestRecord>& tests, Claims& claims) {
@@ -128,16 +135,17 @@ void add_kinematics(const std::vector<TestRecord>& tests, Claims& claims) {
                                  ModeOfTable{Mode::D3, 1.5, 1, 60}}) {
     std::vector<double> rate, shape, lode;
     for (const TestRecord& test : tests) {
-      if (!compresses_z(test, row.mode)) continue;
+      if (!goes_forward(test, row.mode)) continue;
       const auto last =
           std::find_if(test.rows.rbegin(), test.rows.rend(), [](const auto& r) { return r.segment == 0; });
       if (last == test.rows.rend() || !(last->eps_dev > 0)) continue;
-      rate.push_back(last->eps_dev / std::abs(last->strain.tensor(2, 2)));
+      rate.push_back(last->eps_dev / std::abs(principal(last->strain.tensor)(0)));
       shape.push_back(last->shape_strain);
       lode.push_back(last->lode_strain);
     }
     const std::string mode = to_string(row.mode);
-    claims.add("Table 1", mode + ": deviatoric strain over strain of z", kNaN, mean_of(rate), {row.rate, 0});
+    claims.add("Table 1", mode + ": deviatoric strain over the largest compression", kNaN, mean_of(rate),
+               {row.rate, 0});
     claims.add("Table 1", mode + ": shape factor of strain", kNaN, mean_of(shape), {row.shape, 0});
     claims.add("Table 1", mode + ": Lode angle of strain [deg]", kNaN, mean_of(lode), {row.lode, 0});
   }
@@ -146,7 +154,7 @@ void add_kinematics(const std::vector<TestRecord>& tests, Claims& claims) {
 void add_uniaxial_end(const std::vector<TestRecord>& tests, Claims& claims) {
   std::vector<double> coordination;
   for (const TestRecord& test : tests) {
-    if (!compresses_z(test, Mode::UNI)) continue;
+    if (!goes_forward(test, Mode::UNI)) continue;
     const auto last = std::find_if(test.rows.rbegin(), test.rows.rend(), [](const auto& r) { return r.segment == 0; });
     if (last != test.rows.rend() && std::abs(last->nu - 0.82) < 1e-3) coordination.push_back(last->C_star);
   }
@@ -189,11 +197,11 @@ void add_collapse(const std::vector<TestRecord>& tests, double steady_from, Clai
                    "fabric_max");
 }
 
-/// Value of a curve of one mode with its error.
+/// Value of a curve of one mode with its error; on a bound it has none.
 Measured value_of(const Calibration* fit, const DensityCurve& curve, double nu) {
-  if (fit == nullptr || !has_values(fit->law, curve)) return {};
-  return {curve.of(fit->law.parameters, nu), standard_error(fit->law, curve, nu),
-          static_cast<std::size_t>(fit->size.packings)};
+  if (fit == nullptr || !has_values(fit->law, curve) || !is_told(fit->law, curve.groups.front())) return {};
+  const double error = standard_error(fit->law, curve, nu);
+  return {curve.of(fit->law.parameters, nu), error > 0 ? error : kNaN, static_cast<std::size_t>(fit->size.packings)};
 }
 
 /// Difference of two fits; packings that they have in common scatter alike, which this counts twice.

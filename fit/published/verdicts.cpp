@@ -46,9 +46,11 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
   for (std::size_t i = 0; i < kParameterCount; ++i) {
     const ParameterInfo& info = parameter_table()[i];
     const std::string_view name = info.name;
-    const std::string whose = mode_of(name.substr(0, name.find('.')));
+    const std::string_view group = name.substr(0, name.find('.'));
+    const std::string whose = mode_of(group);
     const Estimate& estimate = law.estimates[i];
-    const bool stands_for_itself = estimate.status != Status::fixed && !name.starts_with("anisotropy");
+    const bool tied_alone = estimate.status == Status::tied && !is_told(law, group),
+               stands_for_itself = estimate.status != Status::fixed && !tied_alone && !name.starts_with("anisotropy");
     if (!info.published || whose.empty() || !stands_for_itself) continue;
     Verdict v{whose, info.name, std::nullopt, estimate.value, estimate.standard_error, *fields(published)[i]};
     judge(v, estimate.status != Status::not_identified, packings, estimate.degrees_of_freedom);
@@ -56,7 +58,7 @@ void add_verdicts(const CalibratedLaw& law, const std::string& mode, const std::
   }
   for (const DensityCurve& curve : density_curves()) {
     const std::string whose = mode_of(curve.groups.front());
-    const bool known = has_values(law, curve);
+    const bool known = has_values(law, curve) && is_told(law, curve.groups.front());
     if (whose.empty() || !known) continue;
     for (const double nu : kDensities) {
       if (nu < law.range.nu_min - 1e-6 || nu > law.range.nu_max + 1e-6) continue;

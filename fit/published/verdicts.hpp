@@ -42,7 +42,8 @@ struct ModeComparison {
 /// and Q_c their curve's at .74, of other parameters 10 %. Always above zero.
 double difference_that_matters(const std::string& quantity, std::optional<double> nu, double published);
 
-/// Curves at .68 (where the rows reach it), .70, .74, .80 and .82; `packings` n of `law`; descriptions have their own.
+/// Curves at .68 (where the rows reach it), .70, .74, .80 and .82; `packings` n of `law`; descriptions have their own. What no data
+/// tell, as C* where no row counts contacts, is left out: published numbers that stand in for it would agree with themselves.
 std::vector<Verdict> verdicts_of(const CalibratedLaw& law, const std::vector<Description>& descriptions, int packings);
 
 /// The verdict on a number of the paper that is of another material than ours.

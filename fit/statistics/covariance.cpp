@@ -29,7 +29,6 @@ std::vector<Eigen::Index> columns_of(const std::vector<bool>& free) {
 struct Factor {
   Eigen::MatrixXd L, B;
   std::vector<bool> identified;
-  double condition = 0;
 };
 
 /// M^-1 with its eigenvalues, positive at a minimum, held within bounds.
@@ -65,7 +64,6 @@ Factor factor_of(const Eigen::MatrixXd& J, const Eigen::MatrixXd& S) {
   const Eigen::VectorXd& sigma = svd.singularValues();
   Eigen::Index rank = 0;
   while (rank < sigma.size() && sigma(rank) > kNullSingularValue * sigma(0)) ++rank;
-  if (rank > 0) factor.condition = sigma(0) / sigma(rank - 1);
   const Eigen::MatrixXd V = svd.matrixV().leftCols(rank);
   for (Eigen::Index k = 0; k < p; ++k) {
     const double null_part = std::sqrt(std::max(0.0, 1 - V.row(k).squaredNorm()));
@@ -145,7 +143,6 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
   const Eigen::MatrixXd J = jacobian(Eigen::all, columns);
   const Factor factor = factor_of(jacobian, curvature, columns);
   const Eigen::MatrixXd &L = factor.L, &B = factor.B;
-  result.condition = factor.condition;
   if (L.cols() == 0) {  // nothing that was measured moves with any parameter
     for (const Eigen::Index k : columns) result.identified[static_cast<std::size_t>(k)] = false;
     return result;

@@ -19,7 +19,6 @@ struct ClusterCovariance {
   Eigen::VectorXd degrees_of_freedom;  ///< per parameter; NaN without an error
   std::vector<bool> identified;        ///< per parameter, by the singular values
   std::vector<bool> has_error;         ///< identified, and no single packing carries it
-  double condition = 0;                ///< largest over smallest singular value of the scaled columns
 
   Eigen::MatrixXd covariance() const { return influence * influence.transpose(); }
 };

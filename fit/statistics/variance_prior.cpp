@@ -12,6 +12,7 @@ namespace {
 constexpr double kOtherMaterial =
     4;                           // ratio of variances, besides chance, from which on the prior is another material's
 constexpr double kChance = 3.3;  // standard deviations that chance may do: one in a thousand
+constexpr double kFew = 0.6;     // of the packings
 constexpr std::size_t kLeastParts = 8;  // from which a parameter's d0 is told
 
 bool has_error(const CalibratedLaw& law, std::size_t i) {
@@ -95,7 +96,11 @@ Moderation moderate(const VariancePrior& prior, const PackingCount& size, Calibr
   Moderation done;
   const std::vector<std::size_t> common = common_parameters(prior, law);
   if (common.empty() || !(size.spheres > 0)) return done;
-  const double carried = prior.size.spheres / size.spheres;
+  // to the spheres at hand, and where few of the packings tell a parameter, by its degrees of freedom, to those of these
+  const auto carried = [&](std::size_t i) {
+    const double told = law.estimates[i].degrees_of_freedom + 1, packings = static_cast<double>(size.packings);
+    return prior.size.spheres / size.spheres * (told < kFew * packings ? packings / told : 1);
+  };
   const auto n = static_cast<Eigen::Index>(common.size());
 
   // Whether it applies. Variances of parameters that hang together are less than n numbers: of n equal ones there is one.
@@ -106,7 +111,7 @@ Moderation moderate(const VariancePrior& prior, const PackingCount& size, Calibr
   for (const std::size_t i : common) {
     const auto k = static_cast<Eigen::Index>(i);
     const double d = law.estimates[i].degrees_of_freedom;
-    sum += std::log(variance(law, i) / (carried * prior.covariance(k, k))) - mean_log(d);
+    sum += std::log(variance(law, i) / (carried(i) * prior.covariance(k, k))) - mean_log(d);
     of_chance += variance_of_log(d) + variance_of_log(prior.degrees_of_freedom(k));
   }
   const double parameters = static_cast<double>(n);
@@ -119,13 +124,13 @@ Moderation moderate(const VariancePrior& prior, const PackingCount& size, Calibr
   for (const std::size_t i : common) {
     const auto k = static_cast<Eigen::Index>(i);
     const double d = law.estimates[i].degrees_of_freedom, d0 = prior.degrees_of_freedom(k);
-    of_prior(k) = std::sqrt(d0 / (d0 + d));
+    of_prior(k) = std::sqrt(carried(i) * d0 / (d0 + d));
     of_ours(k) = std::sqrt(d / (d0 + d));
     law.estimates[i].degrees_of_freedom = d0 + d;
   }
   const Eigen::MatrixXd from_prior = of_prior.asDiagonal() * prior.covariance * of_prior.asDiagonal();
   const Eigen::MatrixXd from_ours = of_ours.asDiagonal() * law.covariance * of_ours.asDiagonal();
-  law.covariance = carried * from_prior + from_ours;
+  law.covariance = from_prior + from_ours;
   for (const std::size_t i : common) {
     const auto k = static_cast<Eigen::Index>(i);
     law.estimates[i].standard_error = std::sqrt(law.covariance(k, k));

@@ -267,5 +267,17 @@ TEST(Calibrate, CanBeStopped) {
   EXPECT_TRUE(stages.count("coordination") == 1 && stages.count("evolution") == 1);
 }
 
+TEST(Calibrate, AStageOfWhatIsWithdrawnTakesNothingAway) {
+  Calibration calibration = nothing_known();
+  Stage& stage = calibration.stages.emplace_back();
+  stage.converged = false;
+  stage.estimates.push_back({"memory.G", {}});
+  EXPECT_TRUE(all_converged(calibration)) << "its rung is left out";
+  calibration.law.estimates[parameter_index("memory.G")].status = Status::fitted;
+  EXPECT_FALSE(all_converged(calibration));
+  stage.estimates.clear();
+  EXPECT_FALSE(all_converged(calibration)) << "it says nothing";
+}
+
 }  // namespace
 }  // namespace grainlaw::fit

@@ -176,5 +176,19 @@ TEST(DataSet, RefusesEmptyAndMisshapenTests) {
   expect_refusal(tests, {tests[2].name, "row 4", "segment"});
 }
 
+TEST(DataSet, RefusesTwoPackingsOfOneSeed) {
+  std::vector<TestRecord> tests = small_set();
+  TestRecord& last = tests.back();
+  last.packing.mean_radius *= 1.01;
+  for (Observation& row : last.rows) row.stress.tensor /= 1.01;  // of the same P*
+  expect_refusal(tests, {last.name, "seed", "another"});
+  tests = small_set();
+  for (TestRecord& test : tests) test.packing.particles = 1000;
+  tests.back().packing.particles = 0;  // not told
+  EXPECT_NO_THROW(check_and_sort(tests));
+  tests.back().packing.particles = 1001;
+  expect_refusal(tests, {tests.back().name, "seed", "another"});
+}
+
 }  // namespace
 }  // namespace grainlaw::fit

@@ -123,5 +123,14 @@ TEST(Moderate, IntervalsOfTwoPackingsHoldTheTruth) {
   EXPECT_LT(width, 1.5) << "without moderation " << student_95(1) * std::sqrt(1 / std::acos(-1.));
 }
 
+TEST(Moderate, AParameterThatFewOfThePackingsTellIsCarriedToThese) {
+  CalibratedLaw law = law_with({{kD, 0.3}, {kC1, 0.1}, {kAlpha, 0.1}, {kNu, 0.1}}, 4);
+  law.estimates[kD].degrees_of_freedom = 1;  // two of the five
+  const VariancePrior prior = prior_with({{kD, 0.1}, {kC1, 0.1}, {kAlpha, 0.1}, {kNu, 0.1}}, 10, 9);
+  moderate(prior, {5, 5000}, law);
+  EXPECT_NEAR(std::pow(law.estimates[kD].standard_error, 2), (9 * 0.01 * 10 / 2 + 1 * 0.09) / 10, 1e-14);
+  EXPECT_NEAR(std::pow(law.estimates[kC1].standard_error, 2), (9 * 0.01 * 10 / 5 + 4 * 0.01) / 13, 1e-14);
+}
+
 }  // namespace
 }  // namespace grainlaw::fit

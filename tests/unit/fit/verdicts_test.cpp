@@ -159,5 +159,23 @@ TEST(Verdicts, EachModeHasTheNumbersOfItsOwnRow) {
   EXPECT_THROW(find(all, "D3", "coordination.C1"), std::logic_error);
 }
 
+TEST(Verdicts, WhatNoDataTellIsNotJudged) {
+  Calibration c = published("", {"coordination", "rattlers", "pressure"});
+  for (const char* name : {"coordination.C1", "coordination.alpha", "rattlers.phi_c", "rattlers.phi_v"})
+    c.law.estimates[parameter_index(name)].status = Status::fixed;  // as published, no row counts contacts
+  c.law.estimates[parameter_index("coordination.nu_c")].status = Status::tied;
+  const std::vector<Verdict> all = verdicts_of(c.law, {}, 5);
+  for (const Verdict& v : all)
+    EXPECT_TRUE(v.verdict == "not identified" || v.quantity.starts_with("pressure.") || v.quantity == "P_star")
+        << v.quantity << " agrees with itself";
+  EXPECT_NO_THROW(find(all, "ISO", "pressure.nu_c"));
+  EXPECT_NO_THROW(find(all, "ISO", "P_star"));
+}
+
+TEST(Verdicts, ShearFromLoadingIsJudgedByItsOwnMode) {
+  EXPECT_EQ(published_parameters("D3-loading").steady.pressure.nu_c, published_parameters("D3").steady.pressure.nu_c);
+  EXPECT_NE(published_parameters("D3-loading").steady.pressure.nu_c, published_parameters("D2").steady.pressure.nu_c);
+}
+
 }  // namespace
 }  // namespace grainlaw::fit
