@@ -170,7 +170,12 @@ void add_advice(const Law& law, predict::PredictionFolder& content) {
     return;
   }
   content.needed = predict::rung_needed(law.calibrated.parameters, law.segments);
-  content.recommended = predict::recommended_rung(law.calibrated.rehearsals, law.segments, rungs, content.needed);
+  const auto recommended_of = [&](const std::vector<Rung>& choice) {
+    return predict::recommended_rung(law.calibrated.rehearsals, law.segments, choice, content.needed);
+  };
+  content.recommended = recommended_of(rungs);
+  if (const Rung better = recommended_of(law.rungs).rung; better != content.recommended.rung)
+    content.recommended.why += fmt::format("; of all rungs it would be {}, which has no curve here", to_string(better));
   const predict::PredictedCurve* cheaper = nullptr;
   for (const predict::PredictedCurve& curve : content.curves) {
     if (curve.seed) continue;
@@ -205,36 +210,17 @@ void add_rehearsals(const Law& law, predict::PredictionFolder& content) {
     };
     said.models.push_back({rung, of(Rehearsed::P_star), of(Rehearsed::s_par), of(Rehearsed::F_par)});
   }
-  if (!said.outside.empty()) {
-    content.warnings.push_back(fmt::format("outside rehearsals: {}; how far the law is off there is not known",
-                                           fmt::join(said.outside, ", ")));
-  }
 }
 
-/// What the law does not know: by its data, and of the path.
 void add_warnings(const PredictionInput& input, predict::PredictionFolder& content) {
-  if (!knows_fabric(input.law.parameters))
-    content.warnings.emplace_back("the law was calibrated without fabric: it says nothing of it");
+  content.warnings = warnings_along(input.law, input.path);
   if (!input.model) {
     for (std::string& line : left_out_rungs(input.law)) content.warnings.push_back(std::move(line));
-  }
-  content.warnings.insert(content.warnings.end(), input.path.warnings.begin(), input.path.warnings.end());
-  if (content.path.branch != Branch::unloading) {
-    content.warnings.push_back(fmt::format(
-        "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "
-        "preparation, are those of that branch",
-        to_string(content.path.branch)));
   }
   if (input.finished_runs && !input.finished_runs->fitted.empty()) {
     content.warnings.push_back(
         fmt::format("runs are on packings that were fitted, too (seeds {}): they agree better than new ones would",
                     fmt::join(input.finished_runs->fitted, ", ")));
-  }
-  const auto spins = [](const PathSegment& segment) { return !segment.spin.isZero(0); };
-  if (std::ranges::any_of(content.path.segments, spins)) {
-    content.warnings.emplace_back(
-        "the path spins, which nothing that was calibrated or rehearsed does; how far the law is off there is not "
-        "known");
   }
 }
 
@@ -282,6 +268,33 @@ void log_warnings(const CalibratedLaw& law, const predict::PredictionFolder& con
 
 }  // namespace
 
+std::vector<std::string> warnings_along(const CalibratedLaw& law, const PathFile& file) {
+  const Path& path = file.path;
+  std::vector<std::string> warnings;
+  if (!knows_fabric(law.parameters))
+    warnings.emplace_back("the law was calibrated without fabric: it says nothing of it");
+  warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  if (path.branch != Branch::unloading) {
+    warnings.push_back(fmt::format(
+        "initial.branch \"{}\": the law knows the unloading branch alone; its start, and what a packing keeps of its "
+        "preparation, are those of that branch",
+        to_string(path.branch)));
+  }
+  const auto spins = [](const PathSegment& segment) { return !segment.spin.isZero(0); };
+  if (std::ranges::any_of(path.segments, spins)) {
+    warnings.emplace_back(
+        "the path spins, which nothing that was calibrated or rehearsed does; how far the law is off there is not "
+        "known");
+  }
+  if (law_decides(path) || law.rehearsals.empty()) return warnings;
+  const std::vector<StraightSegment> segments = resolve(path);
+  const auto outside = ways_outside(traits_of(segments), spokesmen_for(segments, law.rehearsals));
+  if (!outside.empty())
+    warnings.push_back(
+        fmt::format("outside rehearsals: {}; how far the law is off there is not known", fmt::join(outside, ", ")));
+  return warnings;
+}
+
 PredictionInput read_prediction_input(const fs::path& parameters, const fs::path& path) {
   return prediction_input(parameters, read_path(path), path.string());
 }
@@ -291,6 +304,7 @@ PredictionInput prediction_input(const fs::path& parameters, PathFile path, cons
       .law = read_parameters(parameters).law, .law_file = parameters, .path = std::move(path), .path_name = path_name};
   input.parameters = {{"file", parameters.string()},
                       {"sha256", sha256_of_file(parameters)},
+                      {"law_sha256", law_digest(input.law)},
                       {"dataset_digest", input.law.dataset_digest}};
   return input;
 }
@@ -338,20 +352,23 @@ FinishedRuns finished_runs(const PredictionInput& input, const fs::path& folder)
   return runs;
 }
 
-predict::PredictionFolder predict_path(const PredictionInput& input, const fs::path& output,
-                                       const Execution& execution) {
-  const Path& path = input.path.path;
-  const bool decides = law_decides(path);
+void check_prediction(const PredictionInput& input) {
   if (input.initial == Initial::measured && !input.new_runs && !input.finished_runs)
     throw InvalidInput("predict: --initial measured starts from the values of a packing; give --dem or --against too");
+  for (const Rung model : rungs_of(input)) require_parameters(input.law, model, input.law_file.string());
+  check_starts(input);
+  if (input.new_runs) planned_runs(*input.new_runs, input);  // what cannot be run
+}
+
+predict::PredictionFolder predict_path(const PredictionInput& input, const fs::path& output,
+                                       const Execution& execution) {
+  check_prediction(input);
+  const Path& path = input.path.path;
+  const bool decides = law_decides(path);
   const Law law{
       input.law, rungs_of(input), path, decides ? std::vector<StraightSegment>{} : resolve(path), {{}, execution.stop}};
-  for (const Rung model : law.rungs) require_parameters(input.law, model, input.law_file.string());
-  check_starts(input);
-  if (input.new_runs) planned_runs(*input.new_runs, input);  // likewise what cannot be run
-
   predict::PredictionFolder content;
-  content.name = output.filename().string();
+  content.name = (output.has_filename() ? output : output.parent_path()).filename().string();
   content.path = path;
   content.parameters = input.parameters;
   content.bands = bands_along(law);

@@ -63,6 +63,12 @@ NewRuns new_runs(const PredictionInput& input, dem::Spec spec, std::vector<std::
 /// the law's material and none was fitted, as far as their roles and the data set beside the law say.
 FinishedRuns finished_runs(const PredictionInput& input, const std::filesystem::path& folder);
 
+/// What the law does not know of a path, whatever rung follows it.
+std::vector<std::string> warnings_along(const CalibratedLaw& law, const PathFile& path);
+
+/// What predict_path() refuses before it writes anything: a path, a rung or a start that the law cannot serve, runs that cannot be made.
+void check_prediction(const PredictionInput& input);
+
 /// Curves of each rung, comparisons, the rung that the path needs. Writes the folder `output`: prediction.json, a CSV for
 /// each curve, with runs dem/ and comparison.json. Throws InvalidInput before anything is written for a path, a rung or a
 /// start that the law cannot serve. A curve on which the law does not converge is left out and told in `failures` and as a

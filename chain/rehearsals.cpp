@@ -45,12 +45,14 @@ std::vector<fs::path> rehearsal_folders(const fs::path& folder) {
 
 }  // namespace
 
+bool is_fitted(const PackingInfo& packing, const TestRecord& test) {
+  const PackingInfo& other = test.packing;
+  return test.role == Role::calibration && other.seed == packing.seed && other.particles == packing.particles &&
+         other.mean_radius == packing.mean_radius;
+}
+
 bool is_fitted(const PackingInfo& packing, const Dataset& dataset) {
-  return std::ranges::any_of(dataset.tests, [&](const DatasetTest& test) {
-    const PackingInfo& other = test.record.packing;
-    return test.record.role == Role::calibration && other.seed == packing.seed &&
-           other.particles == packing.particles && other.mean_radius == packing.mean_radius;
-  });
+  return std::ranges::any_of(dataset.tests, [&](const DatasetTest& test) { return is_fitted(packing, test.record); });
 }
 
 std::vector<predict::RehearsalRuns> read_rehearsals(const fs::path& given, const std::string& name,

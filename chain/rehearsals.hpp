@@ -15,7 +15,8 @@ namespace grainlaw::chain {
 
 inline constexpr const char* kRehearsalsFolder = "rehearsals";  ///< beside dataset.json
 
-/// Whether a calibration test of `dataset` was run on the packing.
+/// Whether `test` is one of calibration on the packing, and whether `dataset` has one.
+bool is_fitted(const PackingInfo& packing, const TestRecord& test);
 bool is_fitted(const PackingInfo& packing, const Dataset& dataset);
 
 /// The rehearsals of `dataset`, which was read in `folder`, by path. Throws InvalidInput for a folder below rehearsals/ whose

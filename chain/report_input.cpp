@@ -121,7 +121,7 @@ ReportInput read_report_input(const fs::path& dir) {
   add_studies(dir, input);
   const std::vector<fs::path> folders = folders_of(dir / "predictions");
   if (folders.empty()) input.no_predictions = reason_for_none(parameters.law, predict_into + "NAME");
-  const std::string digest = sha256_of_file(dir / "parameters.json");
+  const std::string digest = sha256_of_file(dir / "parameters.json"), digest_of_law = law_digest(parameters.law);
   for (const fs::path& folder : folders) {
     const std::string name = folder.filename().string();
     require_file(folder / "prediction.json", predict_into + name);
@@ -134,9 +134,14 @@ ReportInput read_report_input(const fs::path& dir) {
       }
     }
     const Json& used = input.predictions.back().parameters;
-    if (used.is_object() && used.value("sha256", digest) != digest) {
+    const bool same_file = !used.is_object() || used.value("sha256", digest) == digest;
+    const bool same_law = same_file || used.value("law_sha256", "") == digest_of_law;
+    if (!same_law) {
       input.warnings.push_back("predictions/" + name +
-                               " was made with other parameters than those of parameters.json.");
+                               " was made with other parameters than those of parameters.json; it counts nowhere.");
+      input.strange.insert(name);
+    } else if (!same_file) {
+      input.predictions.back().warnings.emplace_back("bands are those of before the last rehearsals; predict again");
     }
     add_facts(input.predictions.back().provenance, "", "predictions/" + name + "/prediction.json", input.provenance);
   }

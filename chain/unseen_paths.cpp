@@ -13,14 +13,17 @@ constexpr std::array<const char*, 3> kQuantities = names_of(Rehearsed{});
 std::vector<PathError> errors_of(const predict::PredictionFolder& prediction) {
   std::vector<PathError> errors;
   if (!prediction.dem) return errors;
+  using predict::Initial;
+  const bool by_law = std::ranges::any_of(prediction.comparisons, [](const predict::CurveComparison& comparison) {
+    return comparison.initial == Initial::law;
+  });
   for (const predict::CurveComparison& mean : prediction.comparisons) {
-    if (mean.seed || mean.initial != predict::Initial::law) continue;
+    if (mean.seed || mean.initial != (by_law ? Initial::law : Initial::measured)) continue;
     PathError& error = errors.emplace_back();
-    error.path = prediction.name;
+    error.path = prediction.name + (by_law ? "" : " (measured start)");
     error.along = &prediction.path;
     if (!law_decides(prediction.path)) error.kind = kind_of(traits_of(resolve(prediction.path)));
     error.prediction = &prediction;
-    error.packings = static_cast<int>(prediction.dem->tests.size());
     error.rung = mean.model;
     error.recommended = mean.model == prediction.recommended.rung;
     for (const predict::QuantityComparison& q : mean.comparison.quantities) {
@@ -28,7 +31,6 @@ std::vector<PathError> errors_of(const predict::PredictionFolder& prediction) {
       if (at == std::ssize(kQuantities)) continue;
       const auto i = static_cast<std::size_t>(at);
       error.error[i] = q.normalised_rms;
-      error.bias[i] = q.bias;
       error.in_band[i] = q.coverage_single;
     }
   }
@@ -51,7 +53,6 @@ std::vector<PathError> errors_of(const Rehearsal& rehearsal, const CalibratedLaw
     error.path = rehearsal.name;
     error.along = &rehearsal.path;
     error.kind = rehearsal.kind;
-    error.packings = rehearsal.packings;
     error.rung = followed.rung;
     error.recommended = followed.rung == recommended;
     for (const Rehearsed quantity : kValues<Rehearsed>) {
@@ -70,6 +71,7 @@ std::vector<PathError> errors_on_unseen_paths(const ReportInput& input) {
   std::vector<PathError> all;
   std::vector<const Path*> predicted;
   for (const predict::PredictionFolder& prediction : input.predictions) {
+    if (input.strange.contains(prediction.name)) continue;
     const std::vector<PathError> errors = errors_of(prediction);
     all.insert(all.end(), errors.begin(), errors.end());
     if (!errors.empty()) predicted.push_back(&prediction.path);
@@ -79,6 +81,9 @@ std::vector<PathError> errors_on_unseen_paths(const ReportInput& input) {
     const std::vector<PathError> errors = errors_of(rehearsal, input.calibration.law);
     all.insert(all.end(), errors.begin(), errors.end());
   }
+  std::erase_if(all, [](const PathError& entry) {
+    return std::ranges::none_of(entry.error, [](double error) { return error >= 0; });
+  });
   return all;
 }
 

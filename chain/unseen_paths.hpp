@@ -10,26 +10,25 @@
 
 namespace grainlaw::chain {
 
-/// One rung on one path, from the law's own start; arrays in the order of Rehearsed.
+/// One rung on one path, from the law's own start where that was predicted, else from the measured one; arrays in the order of
+/// Rehearsed.
 struct PathError {
-  std::string path;  ///< name of the prediction or the rehearsal
+  std::string path;  ///< name of the prediction or the rehearsal, "(measured start)" behind it where it is from that
   const Path* along = nullptr;
   PathKind kind = PathKind::monotone;
   const predict::PredictionFolder* prediction = nullptr;  ///< none: a rehearsal
-  int packings = 0;                                       ///< runs of the path
   Rung rung = Rung::reduced;
   bool recommended = false;  ///< for this path
   /// RMS over the largest value [-]: of a prediction by comparison.json, the largest of DEM; of a rehearsal by parameters.json, the
   /// largest that the law has on the path, to first order. NaN without a value.
   std::array<double, 3> error{kNone, kNone, kNone};
-  std::array<double, 3> bias{kNone, kNone, kNone};  ///< of a prediction, mean of law - DEM in the quantity's unit [-]
   std::array<double, 3> in_band{kNone, kNone, kNone};  ///< share of the rows of single runs within their 95 % band [-]
 
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Predictions with runs first, then the rehearsals whose path is none of theirs; each rung that was compared. `input` must
-/// outlive the list.
+/// Predictions with runs first, then the rehearsals whose path is none of theirs; each rung that was compared and has a number.
+/// Predictions by another law are left out. `input` must outlive the list.
 std::vector<PathError> errors_on_unseen_paths(const ReportInput& input);
 
 /// The error of a quantity over several paths.
@@ -37,7 +36,6 @@ struct ErrorOverPaths {
   int paths = 0;   ///< that have it
   double rms = 0;  ///< over the paths [-]
   double least = 0, largest = 0;
-  const PathError* worst = nullptr;
 };
 
 /// Over the entries that `keep` accepts.
@@ -49,7 +47,7 @@ ErrorOverPaths error_over(const std::vector<PathError>& errors, Rehearsed quanti
     const double error = entry.error[static_cast<std::size_t>(quantity)];
     if (!(error >= 0) || !keep(entry)) continue;
     if (over.paths == 0 || error < over.least) over.least = error;
-    if (over.paths == 0 || error > over.largest) over.largest = error, over.worst = &entry;
+    if (over.paths == 0 || error > over.largest) over.largest = error;
     square += error * error;
     ++over.paths;
   }

@@ -17,18 +17,12 @@ struct Pair {
   const Estimate &ours, &other;
 
   bool known() const { return ours.status != Status::not_identified && other.status != Status::not_identified; }
-  /// In units of the difference's standard error; NaN where neither has one.
+  /// In units of the difference's standard error; NaN where one has none: nothing is so and so many of none away.
   double distance() const {
-    const auto square = [](double error) { return std::isfinite(error) ? error * error : 0; };
-    const double error = std::sqrt(square(ours.standard_error) + square(other.standard_error));
-    return known() && error > 0 ? (ours.value - other.value) / error : kUndefined;
+    const bool both = known() && ours.standard_error > 0 && other.standard_error > 0;
+    return both ? (ours.value - other.value) / std::hypot(ours.standard_error, other.standard_error) : kUndefined;
   }
 };
-
-Cell value_or_word(const Estimate& estimate) {
-  return estimate.status == Status::not_identified ? Cell("not identified")
-                                                   : measured(estimate.value, estimate.standard_error);
-}
 
 struct OnPath {
   const PathError &ours, &other;
@@ -43,18 +37,19 @@ Table parameter_pairs(const CalibratedLaw& ours, const CalibratedLaw& other) {
     if (pair.ours.status != Status::not_identified || pair.other.status != Status::not_identified)
       pairs.push_back(pair);
   }
-  const auto beyond = std::ranges::count_if(pairs, [](const Pair& pair) { return std::abs(pair.distance()) > 2; });
-  return table_of(std::to_string(beyond) + " of " + std::to_string(pairs.size()) +
-                      " parameters differ by more than twice the standard error of the difference. Errors count as "
+  const auto beyond = std::ranges::count_if(pairs, [](const Pair&pair) { return std::abs(pair.distance()) > 2; }),
+             judged = std::ranges::count_if(pairs, [](const Pair&pair) { return std::isfinite(pair.distance()); });
+  return table_of(std::to_string(beyond) + " of " + std::to_string(judged) +
+                      " parameters that have an error in both differ by more than twice the standard error of the "
+                      "difference. Errors count as "
                       "independent, which those of shared packings are not",
                   "parameters.json of both", pairs,
                   {{"parameter", words, [](auto& pair) { return pair.info.name; }},
-                   {"this", number, [](auto& pair) { return value_or_word(pair.ours); }},
-                   {"other", number, [](auto& pair) { return value_or_word(pair.other); }},
+                   {"this", number, [](auto& pair) { return estimate_cell(pair.ours); }},
+                   {"other", number, [](auto& pair) { return estimate_cell(pair.other); }},
                    {"difference [errors]", number, [](auto& pair) { return decimals(pair.distance(), 1); }},
                    {"difference", number, [](auto& pair) {
-                      return Cell(pair.known() ? percent_difference(pair.ours.value, pair.other.value) : kNoNumber,
-                                  pair.known() ? pair.ours.value - pair.other.value : kUndefined);
+                      return pair.known() ? difference_cell(pair.ours.value, pair.other.value) : Cell(kNoNumber);
                     }}});
 }
 

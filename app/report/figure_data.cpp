@@ -31,13 +31,17 @@ bool shows_data(const Panel& panel) {
 
 Figure with_data(Figure figure) {
   std::vector<std::string> absent;
-  for (const Panel& panel : figure.panels) {
-    const std::string label = to_plain(panel.y.label);
-    if (!shows_data(panel) && std::ranges::find(absent, label) == absent.end()) absent.push_back(label);
+  std::vector<bool> kept(static_cast<std::size_t>(figure.columns));  // columns of which a panel is left
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const std::string label = to_plain(figure.panels[i].y.label);
+    if (shows_data(figure.panels[i]))
+      kept[i % kept.size()] = true;
+    else if (std::ranges::find(absent, label) == absent.end())
+      absent.push_back(label);
   }
   if (absent.empty()) return figure;
   std::erase_if(figure.panels, [](const Panel& panel) { return !shows_data(panel); });
-  figure.columns = std::max(1, std::min(figure.columns, static_cast<int>(figure.panels.size())));
+  figure.columns = std::max(1, static_cast<int>(std::ranges::count(kept, true)));
   figure.caption = figure.caption + plain(fmt::format(" The data do not tell: {}.", fmt::join(absent, ", ")));
   return figure;
 }

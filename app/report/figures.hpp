@@ -28,11 +28,11 @@ Figure shear_law_figure(const chain::ReportInput& input);
 /// Misfit of P*, s_par, F_par per calibration test of the coupled fit.
 Figure residual_figure(const chain::ReportInput& input);
 
-/// P* (over that of ISO unloading at the same density where it has one), s_par, F_par against eps_dev of one prediction by the
-/// recommended rung with its bands, others behind toggles, and of the DEM runs of its path, those of another prediction of the same
-/// path by another engine, too; below, the residual in units of the band.
-Figure prediction_figure(const std::vector<predict::PredictionFolder>& predictions, std::size_t index,
-                         const CalibratedLaw& law);
+/// P* (over that of ISO unloading at the same density where it has one), s_par, F_par against eps_dev (where the path turns or does not
+/// shear all along, its length; where it nowhere shears, nu) of one prediction by the recommended rung with its bands, others behind
+/// toggles, and of the DEM runs of its path, those of another prediction of the same path by another engine, too; below, the residual
+/// in units of the band.
+Figure prediction_figure(const chain::ReportInput& input, std::size_t index);
 std::string prediction_id(std::size_t index);  ///< of that figure
 
 /// E_kin/E_pot, |energy residual|, inertial number against nu on the isotropic branches.

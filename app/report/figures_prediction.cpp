@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "app/report/figures.hpp"
 #include "app/report/series.hpp"
+#include "chain/rehearsals.hpp"
 #include "model/files/path_json.hpp"
 
 namespace grainlaw::app::report {
@@ -13,21 +16,22 @@ namespace {
 using predict::Initial, predict::PredictedCurve, predict::PredictedRow, predict::PredictionFolder;
 
 struct Predicted {
-  const char* label;
+  const char *label, *symbol;
   double Observation::*measured;
   double (*of)(const PredictedRow&);
   double predict::RowBand::*band;
 };
 
 constexpr std::array<Predicted, 3> kPredicted{
-    {{"pressure {P}* [–]", &Observation::P_star, [](const PredictedRow& row) { return row.state.P; },
+    {{"pressure {P}* [–]", "{P}*", &Observation::P_star, [](const PredictedRow& row) { return row.state.P; },
       &predict::RowBand::P},
-     {"stress ratio {s}_{∥} [–]", &Observation::s_par, [](const PredictedRow& row) { return row.s_par; },
+     {"stress ratio {s}_{∥} [–]", "{s}_{∥}", &Observation::s_par, [](const PredictedRow& row) { return row.s_par; },
       &predict::RowBand::s_par},
-     {"fabric {F}_{∥} [–]", &Observation::F_par, [](const PredictedRow& row) { return row.F_par; },
+     {"fabric {F}_{∥} [–]", "{F}_{∥}", &Observation::F_par, [](const PredictedRow& row) { return row.F_par; },
       &predict::RowBand::F_par}}};
 constexpr double kAboveJamming =
     1.005;  // of nu_c, from where P* over that of ISO unloading is no quotient of two small numbers
+constexpr double kNoShear = 1e-9;  // length of a path of shear that there is none
 constexpr std::size_t kLinePoints = 100, kSymbolsOfARun = 36;
 
 bool strain_grows(const auto& rows) {
@@ -61,37 +65,73 @@ std::string runs_in_words(const std::string& engine, std::size_t count) {
   return fmt::format("{}, {} {}", engine, count, count == 1 ? "run" : "runs");
 }
 
-/// What a prediction's figure shows over what: deviatoric strain, or the length travelled when the path turns; and the unit of the
-/// pressure: where ISO unloading has one all along the path, that at the same density, else none.
+/// What curves are drawn over: deviatoric strain, or the length of shear where it turns, with that of the volume where a part does not
+/// shear, or nu where none does.
+enum class Over { strain, shear, length, density };
+constexpr std::array<const char*, 4> kOver{kStrainLabel, "strain path length ∫|d{ε}_{dev}| [–]",
+                                           "strain path length ∫|d{ε}_{dev}| + ∫|d{ε}_{v}| [–]", kDensityLabel};
+
+/// What a prediction's figure shows over what; and the unit of the pressure: where ISO unloading has one all along the path, that at the
+/// same density, else none.
 struct Shown {
   const PredictionFolder& prediction;
   const LawParameters<double>& parameters;
   std::vector<TestRecord> dem;
   std::vector<OtherRuns> others;
-  bool by_strain = true, by_ratio = true;
+  Over over = Over::strain;
+  bool by_ratio = true;
+  std::vector<StraightSegment> segments = {};  ///< of over length
+  std::vector<double> volume_before = {};      ///< length of the volume's path before each
 
-  double x(const Observation& row) const { return by_strain ? row.eps_dev : row.shear_path; }
-  double x(const PredictedRow& row) const { return by_strain ? row.eps_dev : row.shear_path; }
+  double x(const auto& row) const {
+    if (over == Over::strain) return row.eps_dev;
+    if (over == Over::shear) return row.shear_path;
+    if (over == Over::density) return row.nu;
+    const std::size_t k = std::min(static_cast<std::size_t>(row.segment), segments.size() - 1);
+    return row.shear_path + volume_before[k] + std::abs(std::log(row.nu / segments[k].nu_start));
+  }
   double unit(const Predicted& quantity, double nu) const {
     return by_ratio && &quantity == kPredicted.data() ? parameters.isotropic.P_star(nu) : 1;
   }
 
   Panel panel(const char* label) const {
-    Panel panel = panel_of("", by_strain ? kStrainLabel : "strain path length ∫|d{ε}_{dev}| [–]", label);
-    panel.x.include = 0;
+    Panel panel = panel_of("", kOver[static_cast<std::size_t>(over)], label);
+    if (over != Over::density) panel.x.include = 0;
     return panel;
   }
 };
+
+/// Where a part of a given path does not shear.
+void choose_length(const Path& path, Shown& shown) {
+  const std::vector<StraightSegment> segments = resolve(path);
+  std::vector<double> before{0};
+  bool rests = false;
+  for (const StraightSegment& segment : segments) {
+    const Eigen::Matrix3d& D = segment.direction.tensor;
+    before.push_back(before.back() + segment.length * std::abs(D.trace()));
+    rests = rests || deviator(D).norm() < 1e-9 * D.norm();
+  }
+  if (!rests) return;
+  shown.over = Over::length;
+  shown.segments = segments;
+  shown.volume_before = before;
+}
 
 Shown shown_of(const std::vector<PredictionFolder>& predictions, std::size_t index, const CalibratedLaw& law) {
   const PredictionFolder& prediction = predictions[index];
   Shown shown{prediction, law.parameters, chain::dem_records(prediction), other_runs(predictions, index)};
   std::vector<TestRecord> all = shown.dem;
   for (const OtherRuns& other : shown.others) all.insert(all.end(), other.tests.begin(), other.tests.end());
-  shown.by_strain = std::ranges::all_of(all, [](const TestRecord& test) { return strain_grows(test.rows); }) &&
-                    std::ranges::all_of(prediction.curves, [](const PredictedCurve& drawn) {
-                      return strain_grows(drawn.prediction.rows);
-                    });
+  bool grows = std::ranges::all_of(all, [](const TestRecord&test) { return strain_grows(test.rows); }), shears = false;
+  for (const PredictedCurve& drawn : prediction.curves) {
+    grows = grows && strain_grows(drawn.prediction.rows);
+    for (const PredictedRow& row : drawn.prediction.rows) shears = shears || row.shear_path > kNoShear;
+  }
+  if (!shears)
+    shown.over = Over::density;
+  else if (!grows)
+    shown.over = Over::shear;
+  if (shears && !law_decides(prediction.path)) choose_length(prediction.path, shown);
   const double least = kAboveJamming * law.parameters.isotropic.pressure.nu_c;
   for (const PredictedCurve& drawn : prediction.curves) {
     for (const PredictedRow& row : drawn.prediction.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
@@ -129,14 +169,11 @@ const PredictedCurve* banded_curve(const PredictionFolder& prediction,
 /// How a curve is drawn: the recommended one in full, others only where their toggle is chosen.
 Series law_line(const PredictedCurve& drawn, const PredictedCurve* recommended, double width) {
   const bool measured = drawn.initial == Initial::measured;
-  const Colour colour = drawn.model == Rung::reduced     ? Colour::green
-                        : drawn.model == Rung::evolution ? Colour::vermillion
-                                                         : Colour::blue;
   const bool first = recommended != nullptr && drawn.model == recommended->model && !measured;
   Series line = line_of(plain(to_string(drawn.model) + (measured ? ", from each run's measured start"
                                                         : first  ? ", recommended"
                                                                  : "")),
-                        colour, measured ? Line::dotted : Line::solid, width);
+                        colour_of(drawn.model), measured ? Line::dotted : Line::solid, width);
   if (!first) {
     line.toggle = measured ? "measured start" : to_string(drawn.model);
     line.initially_hidden = recommended != nullptr;
@@ -201,10 +238,11 @@ bool has_band(const PredictionFolder& prediction) {
 /// rows of the run of its seed.
 Panel residual_panel(const Shown& shown, const Predicted& quantity) {
   const bool banded = has_band(shown.prediction);
-  Panel panel = shown.panel(banded ? "(DEM − law)/band" : "DEM − law [–]");
+  const std::string label = quantity.symbol + std::string(banded ? ": (DEM − law)/band" : ": DEM − law [–]");
+  Panel panel = shown.panel(label.c_str());
   panel.zero_line = true;
   const PredictedCurve* const recommended = banded_curve(shown.prediction, distinct_curves(shown.prediction));
-  double end = 0;
+  double begin = std::numeric_limits<double>::infinity(), end = -begin;
   for (const PredictedCurve& drawn : shown.prediction.curves) {
     if (!drawn.seed || !is_drawn(drawn, recommended)) continue;
     for (const TestRecord& test : shown.dem) {
@@ -218,13 +256,14 @@ Panel residual_panel(const Shown& shown, const Predicted& quantity) {
         if (!(band > 0)) continue;
         line.x.push_back(shown.x(test.rows[i]));
         line.y.push_back((test.rows[i].*quantity.measured - quantity.of(row)) / band);
+        begin = std::min(begin, line.x.back());
         end = std::max(end, line.x.back());
       }
     }
   }
-  if (banded) {
+  if (banded && begin <= end) {
     Series inside;
-    inside.x = {0, end};
+    inside.x = {begin, end};
     inside.y = {0, 0};
     inside.bands = {{1, 1}};
     inside.colour = Colour::grey;
@@ -237,10 +276,9 @@ Panel residual_panel(const Shown& shown, const Predicted& quantity) {
 
 std::string prediction_id(std::size_t index) { return fmt::format("prediction-{}", index + 1); }
 
-Figure prediction_figure(const std::vector<predict::PredictionFolder>& predictions, std::size_t index,
-                         const CalibratedLaw& law) {
-  const predict::PredictionFolder& prediction = predictions[index];
-  const Shown shown = shown_of(predictions, index, law);
+Figure prediction_figure(const chain::ReportInput& input, std::size_t index) {
+  const PredictionFolder& prediction = input.predictions[index];
+  const Shown shown = shown_of(input.predictions, index, input.calibration.law);
   const bool compared = !shown.dem.empty();
   std::vector<Panel> panels;
   for (const Predicted& quantity : kPredicted) panels.push_back(value_panel(shown, quantity));
@@ -250,27 +288,39 @@ Figure prediction_figure(const std::vector<predict::PredictionFolder>& predictio
   const std::string folder = "predictions/" + prediction.name + "/";
   std::vector<std::string> sources{folder + "prediction.json", folder + "*.csv"};
   if (compared) sources.push_back(folder + "dem/");
-  const std::string runs = compared ? "DEM on packings that the calibration never saw (" + seed_count(shown.dem) + ")."
-                                    : "No DEM run of this path; grainlaw predict with --dem makes them.";
+  const bool fitted = std::ranges::any_of(shown.dem, [&](const TestRecord& run) {
+    return std::ranges::any_of(input.tests,
+                               [&](const TestRecord& test) { return chain::is_fitted(run.packing, test); });
+  });
+  const std::string runs =
+      compared                       ? fmt::format("DEM on packings {} ({}).",
+                             fitted ? "of which some were fitted, too" : "that the calibration never saw",
+                                                   seed_count(shown.dem))
+      : law_decides(prediction.path) ? "No DEM run of this path, whose strain is the law's."
+                                     : "No DEM run of this path; grainlaw predict with --dem makes them.";
+  const std::string thick = banded_curve(prediction, distinct_curves(prediction)) == nullptr
+                                ? "Lines: each from its run's measured start."
+                                : fmt::format("Thick: {}, recommended: {}.", to_string(prediction.recommended.rung),
+                                              prediction.recommended.why);
   const std::string residual =
       !compared ? ""
       : has_band(prediction)
           ? " Below: DEM − law in half widths of the 95 % band of a single run, within the grey strip as expected."
           : " Below: DEM − law; there is no band of a single run.";
-  return {.id = prediction_id(index),
-          .title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
-                               prediction.path.nu, to_string(prediction.path.branch)),
-          .description =
-              "Three panels over deviatoric strain: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs "
-              "on packings that the calibration never saw, the thick line the recommended prediction of the law with "
-              "its bands. Below each the residuals.",
-          .caption = plain(fmt::format("{}{} Thick: {}, recommended: {}. Bands: {}. The path needs {}: {}.", runs,
-                                       residual, to_string(prediction.recommended.rung), prediction.recommended.why,
-                                       prediction.bands, to_string(prediction.needed.rung), prediction.needed.why)),
-          .sources = sources,
-          .panels = panels,
-          .columns = 3,
-          .panel_height = compared ? 200.0 : 250.0};
+  return {
+      .id = prediction_id(index),
+      .title = fmt::format("{}: {} from ν = {:.3f}, {} branch", prediction.name, kind_of(prediction.path),
+                           prediction.path.nu, to_string(prediction.path.branch)),
+      .description = fmt::format(
+          "Three panels over {}: pressure, stress ratio and deviatoric fabric. Symbols are DEM runs, the thick line "
+          "the recommended prediction of the law with its bands. Below each the residuals.",
+          to_plain(notation(kOver[static_cast<std::size_t>(shown.over)]))),
+      .caption = plain(fmt::format("{}{} {} Bands: {}. The path needs {}: {}.", runs, residual, thick, prediction.bands,
+                                   to_string(prediction.needed.rung), prediction.needed.why)),
+      .sources = sources,
+      .panels = panels,
+      .columns = 3,
+      .panel_height = compared ? 200.0 : 250.0};
 }
 
 }  // namespace grainlaw::app::report

@@ -97,10 +97,7 @@ void add_rungs(Panel& panel, const PanelKey& key, const chain::ReportInput& inpu
       continue;
     for (const chain::FittedCurve& drawn : fitted.curves) {
       const bool first = drawn.model == fitted.recommended;
-      Series line = line_of(plain(to_string(drawn.model) + (first ? ", recommended" : "")),
-                            drawn.model == Rung::reduced     ? Colour::green
-                            : drawn.model == Rung::evolution ? Colour::vermillion
-                                                             : Colour::blue,
+      Series line = line_of(plain(to_string(drawn.model) + (first ? ", recommended" : "")), colour_of(drawn.model),
                             Line::solid, first ? 2.2 : 1.2);
       line.toggle = first ? "" : to_string(drawn.model);
       line.initially_hidden = !first;

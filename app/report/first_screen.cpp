@@ -45,6 +45,7 @@ ErrorOverPaths recommended_over(const std::vector<PathError>& errors, Rehearsed 
 }
 
 bool any(const PathError&) { return true; }
+bool is_recommended(const PathError& entry) { return entry.recommended; }
 bool is_predicted(const PathError& entry) { return entry.prediction != nullptr; }
 
 std::size_t paths_of(const std::vector<PathError>& errors, const auto& keep) {
@@ -111,9 +112,12 @@ Tile cost_tile(const ReportInput& input) {
     steps += static_cast<double>(input.costs[i].steps) * static_cast<double>(input.tests[i].packing.particles);
   }
   const std::string fit = fact_of(input, "seconds", "parameters.json");
+  const std::string last =
+      fit.empty() ? "" : "; the last calibrate took " + duration(std::strtod(fit.c_str(), nullptr));
+  if (!(seconds > 0)) return {plain("cost"), plain(kNoNumber), "of DEM: the data do not tell it" + last};
   return {plain("cost"), plain(duration(seconds)),
-          fmt::format("of DEM on one thread, {} billion particle-steps{}", significant(steps / 1e9, 3),
-                      fit.empty() ? "" : "; the last calibrate took " + duration(std::strtod(fit.c_str(), nullptr))),
+          fmt::format("of DEM on one thread, {} billion particle-steps of element tests{}", significant(steps / 1e9, 3),
+                      last),
           seconds};
 }
 
@@ -130,6 +134,8 @@ Tiles error_tiles(const ReportInput& input, const std::vector<PathError>& errors
     const ErrorOverPaths over =
         predicted ? recommended_over(errors, quantity, is_predicted) : recommended_over(errors, quantity, any);
     std::string note = over.paths > 1 ? fmt::format("{} to {} %", percent(over.least), percent(over.largest)) : "";
+    if (over.paths > 0 && static_cast<std::size_t>(over.paths) < shown)
+      note += fmt::format("{}of {} of them", note.empty() ? "" : ", ", over.paths);
     if (predicted && all > shown)
       note += fmt::format("{}all {} paths: {}", note.empty() ? "" : "; ", all,
                           error_text(recommended_over(errors, quantity, any)));
@@ -165,12 +171,17 @@ void doubt_fit(const ReportInput& input, std::vector<Reservation>& all) {
         {packings < 3   ? 85.0
          : packings < 5 ? 50.0
                         : 28.0,
-         fmt::format("{} {}: every interval is Student's with that few, and chance that they share is in no interval.",
-                     packings, packings == 1 ? "packing" : "packings"),
+         packings < 2
+             ? std::string(
+                   "1 packing: what chance does shows between packings alone, so that no number has an interval.")
+             : fmt::format(
+                   "{} packings: every interval is Student's with that few, and chance that they share is in no "
+                   "interval.",
+                   packings),
          "parameters"});
   for (const std::string& warning : calibration.warnings) {
-    const bool size = warning.starts_with("packings of");
-    all.push_back({size ? 46.0 : 24.0, (size ? "Small " : "") + warning + ".", "warnings"});
+    const bool size = warning.starts_with("packings of"), mixed = warning.find("digests differ") != std::string::npos;
+    all.push_back({mixed ? 95.0 : size ? 46.0 : 24.0, (size ? "Small " : "") + warning + ".", "warnings"});
   }
   std::vector<std::string> unknown, vague, moved;
   for (std::size_t i = 0; i < kParameterCount; ++i) {
@@ -194,7 +205,7 @@ void doubt_fit(const ReportInput& input, std::vector<Reservation>& all) {
 }
 
 void doubt_predictions(const ReportInput& input, const std::vector<PathError>& errors, std::vector<Reservation>& all) {
-  if (errors.empty()) {
+  if (std::ranges::none_of(errors, is_recommended)) {
     all.push_back({90,
                    "Nothing is known of its error: " +
                        (input.no_predictions.empty() ? std::string("no prediction stands beside DEM runs; grainlaw "
@@ -231,8 +242,8 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
   }
   if (worst != nullptr)
     all.push_back({25 + 100 * std::min(0.5, worst->error[worst_of]),
-                   fmt::format("Worst of the {} paths: {} along {} ({}) is {} % off.", paths_of(errors, any),
-                               kNames[worst_of], worst->path, to_string(worst->kind), percent(worst->error[worst_of])),
+                   fmt::format("Worst of the {} paths: {} along {} ({}) is {:.1f} % off.", paths_of(errors, any),
+                               kNames[worst_of], worst->path, to_string(worst->kind), 100 * worst->error[worst_of]),
                    "unseen"});
   if (least_held != nullptr)
     all.push_back({30 + 100 * (0.95 - least_held->in_band[held_of]),
@@ -248,12 +259,14 @@ void doubt_predictions(const ReportInput& input, const std::vector<PathError>& e
     all.push_back(
         {45, fmt::format("Never tried: {} paths. Nothing here speaks for them.", list_of(untried)), "predictions"});
   for (const predict::PredictionFolder& prediction : input.predictions) {
-    for (const std::string& warning : prediction.warnings)
-      all.push_back({36, prediction.name + ": " + warning + ".", "warnings"});
+    for (const std::string& warning : prediction.warnings) {
+      const bool flatters = warning.find("packings that were fitted") != std::string::npos;
+      all.push_back({flatters ? 47.0 : 36.0, prediction.name + ": " + warning + ".", "warnings"});
+    }
     if (!prediction.failures.empty())
       all.push_back({52,
-                     fmt::format("{}: the law did not converge on {} of its curves.", prediction.name,
-                                 prediction.failures.size()),
+                     fmt::format("{}: {} of its curves are left out, the first as {}.", prediction.name,
+                                 prediction.failures.size(), prediction.failures.front().error),
                      "predictions"});
   }
 }
@@ -294,10 +307,9 @@ std::vector<Reservation> reservations(const ReportInput& input, const std::vecto
 Paragraph verdict(const ReportInput& input, const std::vector<PathError>& errors) {
   if (!input.calibration.law.converged)
     return {plain("Do not use it yet: the fit did not converge, what follows is not its optimum."), Tone::poor};
-  if (errors.empty())
-    return {plain("Not judged: no path was rehearsed and no prediction here is compared with runs. Its parameters "
-                  "stand below; how "
-                  "well it predicts is not known."),
+  if (std::ranges::none_of(errors, is_recommended))
+    return {plain("Not judged: no path was rehearsed, and no prediction of this law has an error beside runs. Its "
+                  "parameters stand below; how well it predicts is not known."),
             Tone::poor};
   std::vector<std::string> clauses;
   std::set<PathKind> kinds;
@@ -314,7 +326,10 @@ Paragraph verdict(const ReportInput& input, const std::vector<PathError>& errors
     // what most kinds are, and the exceptions
     const auto most = static_cast<std::size_t>(
         std::ranges::max_element(by_grade, {}, [](const auto& of) { return of.size(); }) - by_grade.begin());
-    if (by_grade[most].empty()) continue;
+    if (by_grade[most].empty()) {
+      clauses.push_back(fmt::format("of {} nothing is known", kNames[static_cast<std::size_t>(quantity)]));
+      continue;
+    }
     std::string clause = fmt::format("{} {}", kNames[static_cast<std::size_t>(quantity)], kGrades[most]);
     for (std::size_t g = 0; g < by_grade.size(); ++g) {
       if (g != most && !by_grade[g].empty())
@@ -351,7 +366,10 @@ Table errors_by_kind(const std::vector<PathError>& errors) {
     };
   };
   return table_of(
-      "By kind of path: error of the recommended rung and its range over the paths", "", kinds,
+      "By kind of path: error of the recommended rung and its range over the paths; predicted ones by their single "
+      "runs, "
+      "rehearsed ones by the mean of the runs",
+      "", kinds,
       {{"kind (paths)", Content::words,
         [](const OfKind& row) { return Cell(fmt::format("{} ({})", to_string(row.kind), row.paths)); }},
        {"where", Content::words, [](const OfKind& row) { return kWhere[static_cast<std::size_t>(row.kind)]; }},

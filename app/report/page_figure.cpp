@@ -15,6 +15,8 @@
 namespace grainlaw::app::report {
 namespace {
 
+constexpr double kManyTimes =
+    100;  // from which largest over smallest on their logarithms are packed: 18 bits of P* at jamming
 constexpr unsigned kUndefinedCode = 262143, kLargestCode = 262142;  // of 18 bits
 
 /// The figure's arrays as JSON, each once: many series share their abscissae.
@@ -146,6 +148,11 @@ std::string code_list(const std::vector<std::string>& files) {
 }
 
 std::string packed_numbers(const std::vector<double>& values, bool logarithmic) {
+  double least = std::numeric_limits<double>::max(), most = 0;
+  for (const double value : values) {
+    if (std::isfinite(value)) least = std::min(least, value), most = std::max(most, value);
+  }
+  logarithmic = logarithmic || (least > 0 && most > kManyTimes * least);
   const auto number = [=](double value) {
     if (!std::isfinite(value) || (logarithmic && value <= 0)) return std::numeric_limits<double>::quiet_NaN();
     return logarithmic ? std::log(value) : std::clamp(value, -kLargestDrawn, kLargestDrawn);
@@ -166,7 +173,7 @@ std::string packed_numbers(const std::vector<double>& values, bool logarithmic) 
     const unsigned code = std::isfinite(v) ? static_cast<unsigned>(std::lround(share * kLargestCode)) : kUndefinedCode;
     text += {base64_character(code >> 12), base64_character(code >> 6), base64_character(code)};
   }
-  return fmt::format("[{:.9g},{:.9g},\"{}\"]", lowest, highest, text);
+  return fmt::format("[{:.9g},{:.9g},\"{}\"{}]", lowest, highest, text, logarithmic ? ",1" : "");
 }
 
 std::string toggle_style(std::size_t count) {

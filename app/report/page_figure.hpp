@@ -15,8 +15,9 @@ std::string drawing_html(const Drawing& drawing);
 std::string code_list(const std::vector<std::string>& files);
 
 /// `values` for a script, as JSON: [lowest, highest, characters], three characters of base 64 for each value, 0 at the lowest
-/// and 262142 at the highest, 262143 where it is undefined; with `logarithmic` of the natural logarithms, and undefined where
-/// not positive. So the page keeps five digits of an axis in three characters.
+/// and 262142 at the highest, 262143 where it is undefined; so the page keeps five digits of an axis in three characters. With a
+/// fourth entry 1 they are the natural logarithms: with `logarithmic`, then undefined where not positive, and of positive values that
+/// span more than a factor of 100, which keep five digits each.
 std::string packed_numbers(const std::vector<double>& values, bool logarithmic);
 
 /// Rules of style that hide what one of `count` toggles of a figure stands for.

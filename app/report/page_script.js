@@ -5,13 +5,14 @@
 
 const ALPHABET = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
 
-// [lowest, highest, three characters a value] as page_figure.cpp packs it; null: undefined. Rounded to what three characters hold.
-function unpack([lowest, highest, text], logarithmic) {
+// [lowest, highest, three characters a value, 1: logarithms] as page_figure.cpp packs it; null: undefined. Rounded to what three
+// characters hold.
+function unpack([lowest, highest, text, log]) {
   const step = (highest - lowest) / 262142;
   const decimals = Math.min(20, Math.max(0, Math.ceil(-Math.log10(step))));
   return (text.match(/.../g) || []).map(three => {
     const code = [...three].reduce((sum, c) => 64 * sum + ALPHABET.indexOf(c), 0), value = lowest + step * code;
-    return code === 262143 ? null : logarithmic ? +Math.exp(value).toPrecision(5) : step ? +value.toFixed(decimals) : lowest;
+    return code === 262143 ? null : log ? +Math.exp(value).toPrecision(5) : step ? +value.toFixed(decimals) : lowest;
   });
 }
 
@@ -45,12 +46,13 @@ function ticks({from, to, log}, wanted) {
 // The numbers of a figure, one point a line.
 function csv(figure) {
   const quote = text => /[",\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text;
-  const lines = ['panel,series,abscissa,ordinate,x,y,standard error,band,second band'];
+  const lines = ['panel,series,number,abscissa,ordinate,x,y,standard error,band,second band'];
   for (const panel of figure.panels) {
-    for (const s of panel.series) {
-      s.x.forEach((x, i) => lines.push([quote(panel.title), quote(s.label), quote(panel.x.label), quote(panel.y.label), x, s.y[i],
-        ...[s.error, s.bands[0], s.bands[1]].map(list => list ? list[i] : '')].join(',')));
-    }
+    // runs of several packings share a label
+    panel.series.forEach((s, k) => {
+      if (s.label) s.x.forEach((x, i) => lines.push([quote(panel.title), quote(s.label), k + 1, quote(panel.x.label),
+        quote(panel.y.label), x, s.y[i], ...[s.error, s.bands[0], s.bands[1]].map(list => list ? list[i] : '')].join(',')));
+    });
   }
   return lines.join('\n') + '\n';
 }
@@ -65,15 +67,14 @@ function compare(a, b, descending) {
 // A figure's data with its numbers unpacked.
 function read_figure(data) {
   const unpacked = {};
-  const numbers = (index, log) => index === undefined ? undefined
-    : unpacked[index + (log ? 'l' : '')] ||= unpack(data.arrays[index], log);
+  const numbers = index => index === undefined ? undefined : unpacked[index] ||= unpack(data.arrays[index]);
   const axis = ([label, from, to, log]) => ({label, from, to, log, all: [from, to]});
   for (const panel of data.panels) {
     panel.x = axis(panel.x);
     panel.y = axis(panel.y);
     for (const s of panel.series) {
-      s.x = numbers(s.x, panel.x.log);
-      s.y = numbers(s.y, panel.y.log);
+      s.x = numbers(s.x);
+      s.y = numbers(s.y);
       s.error = numbers(s.error);
       s.bands = (s.bands || []).map(b => numbers(b));
     }
@@ -166,13 +167,15 @@ function zoom(fig, p, fs, gs) {
 const whole = fig => zoom(fig, undefined, [-1e9, 1e9], [-1e9, 1e9]);
 
 const visible = s => !s.box || s.box.checked;
+// A strip or a floor without a name has no points to read.
+const named = s => s.label && visible(s);
 const can_show = (p, s, i) => defined(p.x, s.x[i]) && defined(p.y, s.y[i]) && inside(p.x, s.x[i]) && inside(p.y, s.y[i]);
 
 // The point nearest to a place [px]: {s, i}, undefined where none is within `reach`.
 function nearest(p, x, y, reach) {
   let best, least = reach * reach;
   for (const s of p.series) {
-    if (!visible(s)) continue;
+    if (!named(s)) continue;
     for (let i = 0; i < s.x.length; ++i) {
       if (!can_show(p, s, i)) continue;
       const d = (px(p, s.x[i]) - x) ** 2 + (py(p, s.y[i]) - y) ** 2;
@@ -210,7 +213,7 @@ function mark(fig, p, point) {
 // Arrows go along a series and from one to the next, + and - zoom about the point, Escape shows the whole range.
 function press(fig, p, event) {
   const key = event.key, points = s => s.x.map((_, i) => i).filter(i => can_show(p, s, i));
-  const list = p.series.filter(s => visible(s) && points(s).length);
+  const list = p.series.filter(s => named(s) && points(s).length);
   let {s, i} = list.includes(p.point?.s) ? p.point : {s: list[0]};
   let said = '';
   if (key === 'Escape') {

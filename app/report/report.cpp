@@ -29,7 +29,7 @@ Block text(const std::string& words) { return open(Paragraph{plain(words)}); }
 Block drawn(const Figure& whole) {
   const Figure figure = with_data(whole);
   if (!figure.panels.empty()) return open(figure);
-  return open(Paragraph{plain(whole.title + ": nothing to draw.") + figure.caption});
+  return open(Paragraph{plain(whole.title + ": nothing to draw. ") + figure.caption});
 }
 
 constexpr const char* kReading =
@@ -61,7 +61,7 @@ Section predictions(const chain::ReportInput& input, const std::vector<chain::Pa
     section.blocks.push_back(folded("Path by path: the rehearsals", table));
   for (std::size_t i = 0; i < input.predictions.size(); ++i) {
     const predict::PredictionFolder& prediction = input.predictions[i];
-    Figure figure = prediction_figure(input.predictions, i, input.calibration.law);
+    Figure figure = prediction_figure(input, i);
     if (prediction.provenance.is_object()) figure.command = prediction.provenance.value("command", "");
     section.blocks.push_back(drawn(figure));
     if (const Table table = prediction_table(prediction); !table.rows.empty())  // compared with nothing: none
@@ -136,12 +136,11 @@ Section comparison(const chain::ReportInput& input, const std::vector<chain::Pat
                    const chain::ReportInput& other, const std::string& name) {
   Section section{"comparison", "Beside " + name, {}};
   const std::vector<chain::PathError> errors_of_other = errors_on_unseen_paths(other);
-  if (const Table table = error_pairs(errors, errors_of_other); table.rows.empty())
-    section.blocks.push_back(text("No path that no fit saw is in both."));
-  else
-    section.blocks.push_back(open(table));
+  const Table both = error_pairs(errors, errors_of_other);
+  section.blocks.push_back(both.rows.empty() ? text("No path that no fit saw is in both.") : open(both));
   if (const Table kinds = errors_by_kind(errors_of_other); !kinds.rows.empty()) {
-    section.blocks.push_back(text("All unseen paths of the other, of which those above are a part:"));
+    section.blocks.push_back(text(std::string("All unseen paths of the other") +
+                                  (both.rows.empty() ? ":" : ", of which those above are a part:")));
     section.blocks.push_back(open(kinds));
   }
   section.blocks.push_back(open(parameter_pairs(input.calibration.law, other.calibration.law)));

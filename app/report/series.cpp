@@ -93,6 +93,10 @@ Colour colour_of(std::size_t i) {
   return colours[i % colours.size()];
 }
 
+Colour colour_of(Rung rung) {
+  return rung == Rung::reduced ? Colour::green : rung == Rung::evolution ? Colour::vermillion : Colour::blue;
+}
+
 std::string kind_of(const Path& path) {
   std::string kind;
   for (const PathSegment& segment : path.segments) {

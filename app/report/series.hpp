@@ -12,6 +12,7 @@
 #include "app/report/figure.hpp"
 #include "model/calibrated_law.hpp"
 #include "model/density_curves.hpp"
+#include "model/law.hpp"
 #include "model/vocabulary/test_record.hpp"
 
 namespace grainlaw::app::report {
@@ -90,6 +91,8 @@ bool is_same_density(double a, double b);
 /// Marker and colour of the i-th seed (or density), repeating after the last.
 Marker marker_of(std::size_t i);
 Colour colour_of(std::size_t i);
+
+Colour colour_of(Rung rung);
 
 /// Modes of the path, e.g. "D2", "D2→ISO→ISO".
 std::string kind_of(const Path& path);

@@ -8,6 +8,11 @@
 
 namespace grainlaw::app::report {
 
+/// An estimate with its error, and its status in brackets where it is not fitted.
+Cell estimate_cell(const Estimate& estimate);
+/// Of `ours` from `reference` in percent.
+Cell difference_cell(double ours, double reference);
+
 /// Every parameter: meaning, symbol, equation, ours +- one standard error, 95 % interval, published, relative difference.
 Table parameter_comparison(const CalibratedLaw& law);
 /// Parameters with a value as bars with their intervals beside the published ones: jamming densities as they are, those with a

@@ -32,15 +32,6 @@ std::vector<Parameter> parameters_of(const CalibratedLaw& law) {
 }
 
 /// "8.27 ± 0.31", "0.6653 (fixed)", "not identified".
-Cell estimate_cell(const Parameter& parameter) {
-  const Estimate& estimate = parameter.estimate;
-  std::string status = to_string(estimate.status);
-  std::replace(status.begin(), status.end(), '_', ' ');
-  if (!parameter.is_known()) return status;
-  const Cell value = measured(estimate.value, estimate.standard_error);
-  return estimate.status == Status::fitted ? value : Cell(to_plain(value.text) + " (" + status + ")", value.value);
-}
-
 /// Where it says nothing, the note that says so.
 std::string interval_of(const Parameter& parameter) {
   if (parameter.says_nothing) return parameter.estimate.note;
@@ -75,16 +66,28 @@ struct Jamming {
 
 }  // namespace
 
+Cell estimate_cell(const Estimate& estimate) {
+  std::string status = to_string(estimate.status);
+  std::replace(status.begin(), status.end(), '_', ' ');
+  if (estimate.status == Status::not_identified) return status;
+  const Cell value = measured(estimate.value, estimate.standard_error);
+  return estimate.status == Status::fitted ? value : Cell(to_plain(value.text) + " (" + status + ")", value.value);
+}
+
+Cell difference_cell(double ours, double reference) {
+  return {percent_difference(ours, reference), 100 * (ours - reference) / std::abs(reference)};
+}
+
 Table parameter_comparison(const CalibratedLaw& law) {
   const auto difference = [](const Parameter& p) {
-    return percent_difference(p.is_known() ? p.estimate.value : kUndefined, p.published());
+    return difference_cell(p.is_known() ? p.estimate.value : kUndefined, p.published());
   };
   Table table = table_of("Parameters of the law: ours and published (Imole et al. 2013, Tables 2 and 3)",
                          "parameters.json", parameters_of(law),
                          {{"parameter", words, [](auto& p) { return p.info.name; }},
                           {"symbol", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
                           {"Eq.", symbol, [](auto& p) { return equation_text(p.info.equation); }},
-                          {"ours ± standard error", number, estimate_cell},
+                          {"ours ± standard error", number, [](auto& p) { return estimate_cell(p.estimate); }},
                           {"95 % interval", number, interval_of},
                           {"published", number, [](auto& p) { return digits(p.published(), 5); }},
                           {"difference", number, difference}});
@@ -113,10 +116,11 @@ Table forest(const CalibratedLaw& law, Forest which) {
     cell.bar = drawn;
     return cell;
   };
-  std::vector<ColumnOf<Parameter>> columns{{"", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
-                                           {"parameter", words, [](auto& p) { return p.info.name; }},
-                                           {"", symbol, bar},
-                                           {"ours ± standard error", number, estimate_cell}};
+  std::vector<ColumnOf<Parameter>> columns{
+      {"", symbol, [](auto& p) { return paper_symbol(p.info.symbol); }},
+      {"parameter", words, [](auto& p) { return p.info.name; }},
+      {"", symbol, bar},
+      {"ours ± standard error", number, [](auto& p) { return estimate_cell(p.estimate); }}};
   if (which != Forest::own) columns.push_back({"published", number, [](auto& p) { return digits(p.published(), 5); }});
   Table table =
       table_of(which == Forest::densities ? "Jamming densities: ours with 95 % interval (dot), published (bar)"
@@ -236,7 +240,7 @@ std::string parameter_summary(const CalibratedLaw& law) {
       fmt::format(fmt::runtime(kRow), "parameter", "ours ± standard error", "95 % interval", "published") +
       std::string(80, '-') + "\n";
   for (const Parameter& p : parameters_of(law)) {
-    text += fmt::format(fmt::runtime(kRow), p.info.name, to_plain(estimate_cell(p).text),
+    text += fmt::format(fmt::runtime(kRow), p.info.name, to_plain(estimate_cell(p.estimate).text),
                         p.says_nothing ? "not determined" : interval_of(p), significant(p.published(), 5));
   }
   return text;

@@ -38,9 +38,12 @@ double median(std::vector<double> values) {
 struct Run {
   const TestRecord& test;
   const RunCost& cost;
-
-  bool is_cost_known() const { return cost.steps > 0; }
 };
+
+/// Of steps and seconds: data of others tell none, preparations no steps.
+Cell if_known(double number, int digits_shown = 4) {
+  return number > 0 ? Cell(digits(number, digits_shown)) : Cell(kNoNumber);
+}
 
 std::vector<Run> runs_of(const chain::ReportInput& input) {
   std::vector<Run> runs;
@@ -72,7 +75,6 @@ Table run_table(const chain::ReportInput& input) {
   const auto energy_ratio = [](const Observation& row) { return row.E_kin / row.E_pot; };
   const auto energy_error = [](const Observation& row) { return std::abs(row.energy_residual); };
   const auto inertial_number = [](const Observation& row) { return row.inertial_number; };
-  const auto if_known = [](const Run& run, const Cell& cell) { return run.is_cost_known() ? cell : kNoNumber; };
   return table_of(
       "Runs of the data set", "dataset/", runs_of(input),
       {{"test", words, [](auto& run) { return run.test.name; }},
@@ -82,8 +84,8 @@ Table run_table(const chain::ReportInput& input) {
        {"seed", number, [](auto& run) { return run.test.packing.seed; }},
        {"{N}", number, [](auto& run) { return run.test.packing.particles; }},
        {"rows", number, [](auto& run) { return run.test.rows.size(); }},
-       {"steps", number, [=](auto& run) { return if_known(run, run.cost.steps); }},
-       {"seconds", number, [=](auto& run) { return if_known(run, digits(run.cost.seconds, 3)); }},
+       {"steps", number, [](auto& run) { return run.cost.steps > 0 ? Cell(run.cost.steps) : Cell(kNoNumber); }},
+       {"seconds", number, [](auto& run) { return if_known(run.cost.seconds, 3); }},
        {"median {E}_{kin}/{E}_{pot}", number,
         [=](auto& run) { return digits(median(values(run.test, energy_ratio)), 2); }},
        {"largest |energy residual|", number,
@@ -102,9 +104,9 @@ Table cost_table(const chain::ReportInput& input) {
   return table_of("What the DEM runs cost", "", sums,
                   {{"files", words, &RunSum::files},
                    {"tests", number, &RunSum::tests},
-                   {"time steps", number, [](auto& sum) { return digits(sum.steps); }},
-                   {"particle-steps", number, [](auto& sum) { return digits(sum.particle_steps); }},
-                   {"seconds, all runs together", number, [](auto& sum) { return digits(sum.seconds); }}});
+                   {"time steps of the element tests", number, [](auto& sum) { return if_known(sum.steps); }},
+                   {"particle-steps of these", number, [](auto& sum) { return if_known(sum.particle_steps); }},
+                   {"seconds, preparations and tests", number, [](auto& sum) { return if_known(sum.seconds); }}});
 }
 
 Table provenance_table(const chain::ReportInput& input) {

@@ -311,7 +311,7 @@ SettingsStudy study_from_json(const Json& document) {
   SettingsStudy study;
   study.kind = document.at("study");
   study.error = document.at("error");
-  study.packings = study.kind == "chain" ? Packings::chosen : Packings::given;
+  study.packings = study.kind == "dem" ? Packings::given : Packings::chosen;
   study.base = document.at("base");
   for (const Json& object : document.at("settings")) {
     SettingResult& r = study.results.emplace_back();

@@ -15,9 +15,9 @@ test('the script is at most 15 kB in the page', () => {
 
 test('numbers are unpacked to five digits of their range, undefined ones to null', () => {
   // 0, 262142, 131071 and 262143 of 18 bits, in characters of six
-  assert.deepEqual(script.unpack([-1, 3, 'AAA' + '//+' + 'f//' + '///'], 0), [-1, 3, 1, null]);
-  assert.deepEqual(script.unpack([7, 7, 'AAA'], 0), [7]);
-  const [low, high, middle] = script.unpack([Math.log(1e-4), Math.log(1e2), 'AAA' + '//+' + 'f//'], 1);
+  assert.deepEqual(script.unpack([-1, 3, 'AAA' + '//+' + 'f//' + '///']), [-1, 3, 1, null]);
+  assert.deepEqual(script.unpack([7, 7, 'AAA']), [7]);
+  const [low, high, middle] = script.unpack([Math.log(1e-4), Math.log(1e2), 'AAA' + '//+' + 'f//', 1]);
   assert.deepEqual([low, high, middle], [1e-4, 100, 0.1]);
 });
 
@@ -52,11 +52,12 @@ test('numbers are said with five digits and a true minus', () => {
 
 const figure = () => script.read_figure({
   arrays: [[0, 1, 'AAA//+///'], [10, 20, 'AAA//+AAA'], [0, 0.5, 'AAA//+AAA']],
-  panels: [{title: 'a, "b"', x: ['x [\u2013]', 0, 1, 0], y: ['y', 0, 30, 0], series: [{label: 'DEM', x: 0, y: 1, bands: [2]}]}]});
+  panels: [{title: 'a, "b"', x: ['x [\u2013]', 0, 1, 0], y: ['y', 0, 30, 0], series: [
+    {label: '', x: 0, y: 1}, {label: 'DEM', x: 0, y: 1, bands: [2]}]}]});
 
-test('a figure is one point a line, quoted where it must be', () => {
+test('a figure is one point a line, quoted where it must be, without series that have no name', () => {
   assert.equal(script.csv(figure()).split('\n').slice(1).join('\n'),
-    '"a, ""b""",DEM,x [\u2013],y,0,10,,0,\n"a, ""b""",DEM,x [\u2013],y,1,20,,0.5,\n"a, ""b""",DEM,x [\u2013],y,,10,,0,\n');
+    '"a, ""b""",DEM,2,x [\u2013],y,0,10,,0,\n"a, ""b""",DEM,2,x [\u2013],y,1,20,,0.5,\n"a, ""b""",DEM,2,x [\u2013],y,,10,,0,\n');
 });
 
 test('cells sort as numbers, then as words, empty ones last either way', () => {

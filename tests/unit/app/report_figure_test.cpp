@@ -142,6 +142,11 @@ TEST(ReportFigure, PackedNumbersKeepFiveDigitsOfTheirRange) {
   EXPECT_NEAR(std::exp(logarithms[0]), 1e-9, 1e-13);
   EXPECT_NEAR(std::exp(logarithms[2]), 1e3, 0.1);
   EXPECT_TRUE(std::isnan(logarithms[1]) && std::isnan(logarithms[3]));
+  const Json wide = Json::parse(packed_numbers({6.4e-8, NAN, 0.1}, false));
+  ASSERT_EQ(wide.size(), 4U) << "P* at jamming";
+  EXPECT_NEAR(std::exp(unpacked(wide.dump())[0]) / 6.4e-8, 1, 1e-4);
+  EXPECT_TRUE(std::isnan(unpacked(wide.dump())[1]));
+  EXPECT_EQ(Json::parse(packed_numbers({0, 1, 1000}, false)).size(), 3U);
   EXPECT_EQ(unpacked(packed_numbers({4, 4}, false)), (std::vector<double>{4, 4}));
   EXPECT_EQ(packed_numbers({}, false), "[0,0,\"\"]");
   EXPECT_EQ(packed_numbers({std::nan("")}, false), "[0,0,\"///\"]");

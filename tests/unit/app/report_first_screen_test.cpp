@@ -82,7 +82,7 @@ TEST(ReportFirstScreen, WhatIsWorstIsSaidFirst) {
   bad.push_back(path_of_kind(PathKind::cyclic, {0.01, 0.4, 0.03}, "far"));
   bad.back().in_band = {0.99, 0.5, 0.97};
   const std::vector<Reservation> all = reservations(input, bad);
-  EXPECT_TRUE(says(all, "stress ratio along far (cyclic) is 40 % off"));
+  EXPECT_TRUE(says(all, "stress ratio along far (cyclic) is 40.0 % off"));
   EXPECT_TRUE(says(all, "holds 50 % of the rows of stress ratio along far"));
   EXPECT_TRUE(says(all, "Never tried: unloading and turning", 10));
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end(), [](auto& a, auto& b) { return a.weight > b.weight; }));
@@ -176,6 +176,39 @@ TEST(ReportComparison, ErrorsStandBesideEachOtherWhereBothHaveThePath) {
   EXPECT_EQ(to_plain(table.rows[0][0].text), "uniaxial-0.728");
   EXPECT_NEAR(table.rows[0][3].value, 2.8, 1e-12);
   EXPECT_NEAR(table.rows[0][4].value, 30, 1e-12);
+}
+
+TEST(ReportFirstScreen, WithoutANumberThereIsNoVerdict) {
+  const PathError nothing =
+      path_of_kind(PathKind::monotone, {PathError::kNone, PathError::kNone, PathError::kNone}, "a");
+  EXPECT_EQ(verdict(test::report_scene(), {}).tone, Tone::poor);
+  PathError other = path_of_kind(PathKind::monotone, {0.01, 0.01, 0.01}, "a");
+  other.recommended = false;
+  EXPECT_EQ(verdict(test::report_scene(), {other}).tone, Tone::poor);
+  EXPECT_NE(words_of({path_of_kind(PathKind::monotone, {0.01, 0.01, PathError::kNone}, "a")}).find("of fabric nothing"),
+            std::string::npos);
+  chain::ReportInput input = test::report_scene();
+  for (predict::PredictionFolder& prediction : input.predictions) {
+    for (predict::CurveComparison& mean : prediction.comparisons) {
+      for (auto& q : mean.comparison.quantities) q.normalised_rms = PathError::kNone;
+    }
+  }
+  input.calibration.law.rehearsals.clear();
+  EXPECT_TRUE(errors_on_unseen_paths(input).empty());
+}
+
+TEST(ReportComparison, WhatHasNoErrorIsNotSoAndSoManyOfNoneAway) {
+  const CalibratedLaw ours = test::report_scene().calibration.law;
+  CalibratedLaw other = ours;
+  Estimate& bound = other.estimates[parameter_index("pressure.p0")];
+  bound = {9, std::nan(""), Status::at_bound, ""};
+  const Table table = parameter_pairs(ours, other);
+  const auto row =
+      std::ranges::find_if(table.rows, [](auto& cells) { return to_plain(cells[0].text) == "pressure.p0"; });
+  ASSERT_NE(row, table.rows.end());
+  EXPECT_TRUE(std::isnan((*row)[3].value));
+  EXPECT_NE(to_plain((*row)[2].text).find("at bound"), std::string::npos);
+  EXPECT_EQ(table.caption.substr(0, 2), "0 ");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/report/figure_data.hpp"
 #include "app/report/figures.hpp"
 #include "tests/support/report_scene.hpp"
 
@@ -23,7 +24,7 @@ struct Scene {
       }
     }
   }
-  Figure figure() const { return prediction_figure(input.predictions, 0, input.calibration.law); }
+  Figure figure() const { return prediction_figure(input, 0); }
 };
 
 const Series& labelled(const Panel& panel, const std::string& words) {
@@ -97,9 +98,7 @@ TEST(ReportPrediction, RunsOfTheSamePathByAnotherEngineAreShown) {
   other.dem->spec = {{"particles", 1000}, {"engine", "lammps"}};
   for (Observation& row : other.dem->tests[0].record.rows) row.s_par += 1;
   scene.input.predictions = {scene.prediction, other};
-  const auto figure = [&](std::size_t index) {
-    return prediction_figure(scene.input.predictions, index, scene.input.calibration.law);
-  };
+  const auto figure = [&](std::size_t index) { return prediction_figure(scene.input, index); };
   const Panel ours = figure(0).panels[1];
   const Series &own = labelled(ours, "DEM by grainlaw"), &theirs = labelled(ours, "DEM by lammps");
   EXPECT_EQ(theirs.x, own.x);
@@ -129,6 +128,55 @@ TEST(ReportShear, TheRecommendedRungIsDrawnOverTheTestsOfItsPath) {
   input.fitted_paths.clear();
   input.calibrate_command = "grainlaw calibrate --dataset D -o D";
   EXPECT_NE(to_plain(stress_ratio_figure(input).caption).find(input.calibrate_command), std::string::npos);
+}
+
+TEST(ReportPrediction, PartsWithoutShearHaveALengthToo) {
+  Scene scene;
+  for (predict::PredictedCurve& drawn : scene.prediction.curves) {
+    for (predict::PredictedRow& row : drawn.prediction.rows) row.shear_path = row.eps_dev = 0;
+  }
+  const Panel isotropic = scene.figure().panels[1];
+  EXPECT_NE(to_plain(isotropic.x.label).find("volume fraction"), std::string::npos);
+  const Series& law = labelled(isotropic, "recommended");
+  EXPECT_GT(law.x.back() - law.x.front(), 0.01) << "not all at one place";
+  Scene mixed;
+  mixed.prediction.path.segments.push_back(mixed.prediction.path.segments.front());
+  PathSegment& idle = mixed.prediction.path.segments.back();
+  idle.mode = Mode::tensor;
+  idle.direction.tensor = -Eigen::Matrix3d::Identity();
+  idle.extent_kind = ExtentKind::target_nu;
+  idle.extent = 0.85;
+  for (predict::PredictedCurve& drawn : mixed.prediction.curves) {
+    predict::PredictedRow row = drawn.prediction.rows.back();
+    row.segment = 1;
+    row.nu = 0.85;
+    drawn.prediction.rows.push_back(row);
+  }
+  const Series& both = labelled(mixed.figure().panels[1], "recommended");
+  EXPECT_GT(both.x.back() - both.x[both.x.size() - 2], 0.01) << "the length of the volume's path";
+}
+
+TEST(ReportPrediction, APanelOfEachQuantityStandsUnderItsOwn) {
+  Scene scene;
+  for (predict::PredictedCurve& drawn : scene.prediction.curves) {
+    for (predict::PredictedRow& row : drawn.prediction.rows) row.F_par = row.single.F_par = std::nan("");
+  }
+  for (DatasetTest& test : scene.prediction.dem->tests) {
+    for (Observation& row : test.record.rows) row.F_par = std::nan("");
+  }
+  const Figure figure = with_data(scene.figure());
+  ASSERT_EQ(figure.panels.size(), 4U);
+  EXPECT_EQ(figure.columns, 2);
+  EXPECT_NE(to_plain(figure.panels[2].y.label).find("P*"), std::string::npos);
+  EXPECT_NE(to_plain(figure.caption).find("do not tell"), std::string::npos);
+}
+
+TEST(ReportPrediction, RunsOnFittedPackingsAreSaid) {
+  Scene scene;
+  EXPECT_NE(to_plain(scene.figure().caption).find("never saw"), std::string::npos);
+  scene.input.tests.front().role = Role::calibration;
+  scene.prediction.dem->tests.front().record.packing = scene.input.tests.front().packing;
+  EXPECT_NE(to_plain(scene.figure().caption).find("some were fitted"), std::string::npos);
 }
 
 }  // namespace

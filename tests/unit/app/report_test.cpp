@@ -10,6 +10,7 @@
 
 #include "app/report/series.hpp"
 #include "chain/report_input.hpp"
+#include "chain/unseen_paths.hpp"
 #include "fit/calibration_file.hpp"
 #include "model/files/dataset.hpp"
 #include "model/files/output.hpp"
@@ -303,6 +304,28 @@ TEST_F(ReportFolder, AnotherDataSetThanTheFittedOneIsSaid) {
   parameters.law.dataset_digest[0] = parameters.law.dataset_digest[0] == '0' ? '1' : '0';
   write_parameters(dir_ / "parameters.json", parameters);
   EXPECT_NE(page().find("another data set"), std::string::npos);
+}
+
+TEST_F(ReportFolder, PredictionsOfAnotherLawCountNowhere) {
+  const fs::path file = dir_ / "predictions" / "uniaxial-0.728" / "prediction.json";
+  const auto errors_with = [&](const Json& parameters) {
+    Json document = read_json(file, JsonSource::own);
+    document["parameters"] = parameters;
+    write_durably(file, document.dump());
+    const chain::ReportInput input = chain::read_report_input(dir_);
+    const auto errors = errors_on_unseen_paths(input);
+    const bool counts = std::ranges::any_of(errors, [](const auto& e) { return e.path == "uniaxial-0.728"; });
+    return std::pair{counts, input.warnings.size()};
+  };
+  const CalibratedLaw law = read_parameters(dir_ / "parameters.json").law;
+  EXPECT_EQ(errors_with({{"sha256", "of another file"}, {"law_sha256", "of another law"}}), std::pair(false, 1ul));
+  EXPECT_EQ(errors_with({{"sha256", "of another file"}}), std::pair(false, 1ul)) << "as earlier programs wrote it";
+  EXPECT_EQ(errors_with({{"sha256", "before a rehearsal"}, {"law_sha256", law_digest(law)}}), std::pair(true, 0ul));
+  CalibratedLaw rehearsed = law;
+  rehearsed.rehearsals.emplace_back().name = "new";
+  EXPECT_EQ(law_digest(rehearsed), law_digest(law));
+  rehearsed.parameters.isotropic.pressure.p0 *= 1.1;
+  EXPECT_NE(law_digest(rehearsed), law_digest(law));
 }
 
 }  // namespace
