@@ -4,6 +4,7 @@
 // write nothing. Time: the work over a rate that is measured now (dem/runs/expected_cost.hpp), the fit's in proportion.
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace grainlaw::chain {
 
 struct Forecast {
   dem::ExpectedCost cost;
-  double rate = 0;                 ///< measured now, all threads together [particle-steps/s]; NaN: nothing asks for it
+  /// measured now, all threads together [particle-steps/s]; NaN: nothing asks for it
+  double rate = std::numeric_limits<double>::quiet_NaN();
   double run_seconds = 0;          ///< expected wall time of the runs that are not finished [s]
   double fit_seconds = 0;          ///< of the fit [s]
   PathTraits covers;               ///< of all paths together

@@ -64,7 +64,11 @@ const Kind* kind_of(const Json& document) {
     const bool first_of_equals = best == nullptr || known > most;
     // a path of SPEC's defaults is a TEST, too: one that says nothing of a packing is a PATH
     const bool only_a_path = known == most && known > 0 && kind.schema == Schema::path;
-    if (!first_of_equals && !only_a_path) continue;
+    // what a SPEC and a TEST have in common is a SPEC, unless that alone would be wrong
+    const bool only_a_test = known == most && known > 0 && kind.schema == Schema::test &&
+                             !schema_violations(document, best->schema, "").empty() &&
+                             schema_violations(document, Schema::test, "").empty();
+    if (!first_of_equals && !only_a_path && !only_a_test) continue;
     best = &kind;
     most = known;
   }
@@ -122,6 +126,7 @@ void inspect_path(const fs::path& file, const Company& company, const fs::path& 
   seen.holds = {fmt::format("{} from a volume fraction of {:.4g}", counted(input.path.path.segments.size(), "segment"),
                             input.path.path.nu)};
   for (const std::string& warning : input.path.warnings) seen.holds.push_back("warning: " + warning);
+  if (fitted) check_prediction(input);
   seen.forecast = forecast(input, execution);
   if (input.new_runs) seen.holds.emplace_back("the runs below are those of predict --dem");
 }
@@ -152,8 +157,10 @@ void inspect_mapping(const fs::path& file, const Execution& execution, Inspectio
     paths.push_back(fmt::format("{}: {}", ours.record.name, ours.says.at(1)));
   }
   dataset_of(mapping, tests);
+  const std::vector<std::string> doubts = suspicions(tests);
   seen.holds = {fmt::format("{} of others, {}", counted(mapping.tests.size(), "test"), counted(rows, "row"))};
   seen.holds.insert(seen.holds.end(), paths.begin(), paths.end());
+  for (const std::string& doubt : doubts) seen.holds.push_back("warning: " + doubt);
 }
 
 void inspect_parameters(const fs::path& file, Inspection& seen) {

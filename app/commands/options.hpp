@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "model/files/number_text.hpp"
 #include "model/vocabulary/enum_names.hpp"
 
 namespace grainlaw::app {
@@ -48,7 +49,20 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
 template <class Value>
 CLI::Option* add_number(CLI::App& command, const std::string& name, Value& value, double least, double most,
                         const std::string& type, const std::string& description) {
-  return add_value(command, name, value, type, description)->check(between(least, most));
+  const auto held = [](auto& of) {
+    if constexpr (requires { *of; })
+      return *of;
+    else
+      return of;
+  };
+  using Number = decltype(held(value));
+  const auto set = [name, &value](const std::string& text) {  // decimal, where CLI11 takes 010 for 8
+    if (const auto number = number_of<Number>(text))
+      value = *number;
+    else
+      throw CLI::ValidationError(name, "got '" + text + "'; give a whole number");
+  };
+  return command.add_option_function<std::string>(name, set, description)->type_name(type)->check(between(least, most));
 }
 
 /// An option that takes seeds and ranges of seeds.

@@ -56,11 +56,12 @@ ExitCode run_prediction(const PredictOptions& options, Session& session) {
     input.new_runs = chain::new_runs(input, chain::spec_of_calibration(options.spec, options.parameters), options.seeds,
                                      options.store);
   }
-  if (options.dry_run) return say_forecast(options.path.string(), chain::forecast(input, session), session);
-  if (!options.against.empty()) {
-    input.finished_runs = chain::finished_runs(input, options.against);
-    if (options.rehearse) keep_as_rehearsal(options, options.against, session, input);
+  if (!options.against.empty()) input.finished_runs = chain::finished_runs(input, options.against);
+  if (options.dry_run) {
+    chain::check_prediction(input);
+    return say_forecast(options.path.string(), chain::forecast(input, session), session);
   }
+  if (options.rehearse && input.finished_runs) keep_as_rehearsal(options, options.against, session, input);
   predict::PredictionFolder prediction = chain::predict_path(input, options.output, session);
   if (options.rehearse && options.dem) {
     keep_as_rehearsal(options, options.output, session, input);

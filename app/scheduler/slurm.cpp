@@ -77,8 +77,20 @@ struct Answer {
   std::string text;  ///< standard output and error
 };
 
+/// The last line that is a number, or one and a cluster: "4711;cluster"; empty: none.
+std::string job_number(const std::string& text) {
+  std::istringstream lines(text);
+  lines.exceptions(std::ios::badbit);
+  std::string job;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string number = line.substr(0, line.find(';'));
+    if (!number.empty() && number.find_first_not_of("0123456789") == std::string::npos) job = number;
+  }
+  return job;
+}
+
 Answer answer_of(const std::string& command) {
-  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");  // sites print lines of their own on either
   if (pipe == nullptr) throw Error(fmt::format("{}: cannot be run", command));
   Answer answer;
   char buffer[4096];
@@ -119,9 +131,12 @@ std::vector<std::string> submit(const std::vector<fs::path>& scripts) {
     const std::string after =
         jobs.empty() ? "" : fmt::format("--dependency=afterok:{} --kill-on-invalid-dep=yes ", jobs.back());
     const Answer answer = answer_of(fmt::format("sbatch --parsable {}{}", after, in_quotes(script.string())));
-    const std::string job = answer.text.substr(0, answer.text.find_first_of(";\n"));
-    if (answer.exit_code != 0 || job.empty() || job.find_first_not_of("0123456789") != std::string::npos)
-      throw Error(fmt::format("{}: sbatch does not take it: {}", script.string(), one_line(answer.text, 300)));
+    const std::string job = answer.exit_code == 0 ? job_number(answer.text) : "";
+    if (job.empty())
+      throw Error(fmt::format(
+          "{}: sbatch does not take it: {}{}", script.string(), one_line(answer.text, 300),
+          jobs.empty() ? ""
+                       : fmt::format("; job {} waits already, scancel it before another try", fmt::join(jobs, ", "))));
     jobs.push_back(job);
   }
   return jobs;

@@ -91,7 +91,9 @@ OrderedJson import_json(const std::vector<chain::ForeignTest>& foreign, const st
                     {"notes", foreign[i].foreign.notes},
                     {"path", tests[i].says}});
   }
-  return {{"output", output.empty() ? OrderedJson(nullptr) : OrderedJson(output)}, {"tests", list}};
+  return {{"output", output.empty() ? OrderedJson(nullptr) : OrderedJson(output)},
+          {"tests", list},
+          {"warnings", chain::suspicions(tests)}};
 }
 
 }  // namespace grainlaw::app

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/report/report.hpp"
 #include "app/terminal/help.hpp"
@@ -45,13 +47,16 @@ std::string advice_text(const predict::PredictionFolder& content) {
 std::string rehearsals_text(const predict::PredictionFolder& content) {
   if (!content.rehearsals) return "";
   const predict::PathRehearsals& said = *content.rehearsals;
-  std::string text =
-      fmt::format("{} paths{}, m = {} degrees of freedom", said.paths,
-                  said.of_kind ? fmt::format(" ({})", to_string(said.kind)) : " of all kinds", said.paths);
+  std::string text = fmt::format("{} {}{}, m = {} {} of freedom", said.paths, said.paths == 1 ? "path" : "paths",
+                                 said.of_kind ? fmt::format(" ({})", to_string(said.kind)) : " of all kinds",
+                                 said.paths, said.paths == 1 ? "degree" : "degrees");
   for (const predict::RehearsedModel& model : said.models) {
     if (model.model != content.recommended.rung) continue;
-    text += fmt::format("; {} as a whole within P* ±{:.2g}, s ±{:.2g}, F ±{:.2g} ({:.0f} %)", to_string(model.model),
-                        model.P_star.whole_curve, model.s_par.whole_curve, model.F_par.whole_curve,
+    std::vector<std::string> within;
+    for (const auto& [name, error] : {std::pair{"P*", &model.P_star}, {"s", &model.s_par}, {"F", &model.F_par}}) {
+      if (std::isfinite(error->whole_curve)) within.push_back(fmt::format("{} ±{:.2g}", name, error->whole_curve));
+    }
+    text += fmt::format("; {} as a whole within {} ({:.0f} %)", to_string(model.model), fmt::join(within, ", "),
                         100 * said.whole_curve_probability);
   }
   text = paragraph("rehearsed", text);
@@ -74,7 +79,9 @@ std::string end_text(const predict::PredictedCurve& curve, bool recommended) {
     text += fmt::format("{:<9} {:<20} {:<17} {:<15} {}\n", "", "single run", half(end.single.P), half(end.single.s_par),
                         half(end.single.F_par));
   if (recommended) text += fmt::format("{:<9} recommended\n", "");
-  return curve.prediction.unjammed ? text + fmt::format("{:<9} unjammed\n", "") : text;
+  if (!curve.prediction.unjammed) return text;
+  return text + (end.state.P > 0 ? fmt::format("{:<9} unjammed on the way, jammed again\n", "")
+                                 : fmt::format("{:<9} unjammed\n", ""));
 }
 
 /// How far a curve is from the runs: a line for each quantity.
@@ -83,7 +90,7 @@ std::string comparison_text(const predict::CurveComparison& entry) {
   const auto share = [](double x) { return std::isfinite(x) ? fmt::format("{:.0f} %", 100 * x) : std::string(); };
   for (const auto& q : entry.comparison.quantities) {
     if (q.rows == 0) continue;  // the law or the runs do not tell it
-    text += fmt::format("{:<9} {:<10} {:<8} {:>+9.4f} {:>8.1f} % {:>12} {:>12}\n", std::exchange(model, ""),
+    text += fmt::format("{:<9} {:<10} {:<8} {:>+9.2g} {:>8.1f} % {:>12} {:>12}\n", std::exchange(model, ""),
                         std::exchange(initial, ""), q.quantity, q.bias, 100 * q.normalised_rms, share(q.coverage_mean),
                         share(q.coverage_single));
   }
@@ -144,13 +151,40 @@ std::string text_of(const chain::TargetCalibration& calibration, const chain::Pr
                             (output / "parameters.json").string());
 }
 
+namespace {
+
+/// Of the curves that are no run's: where they end, with half widths, and what is to be said of them.
+OrderedJson ends_to_json(const predict::PredictionFolder& content) {
+  OrderedJson ends = OrderedJson::array();
+  for (const predict::PredictedCurve& curve : content.curves) {
+    if (curve.seed || curve.prediction.rows.empty()) continue;
+    const predict::PredictedRow& end = curve.prediction.rows.back();
+    const auto value = [](double x, double mean, double single) {
+      return OrderedJson{
+          {"value", number_or_null(x)}, {"mean95", number_or_null(mean)}, {"single95", number_or_null(single)}};
+    };
+    ends.push_back({{"model", to_string(curve.model)},
+                    {"initial", to_string(curve.initial)},
+                    {"nu", end.nu},
+                    {"P_star", value(end.state.P, end.mean.P, end.single.P)},
+                    {"s_par", value(end.s_par, end.mean.s_par, end.single.s_par)},
+                    {"F_par", value(end.F_par, end.mean.F_par, end.single.F_par)},
+                    {"unjammed", curve.prediction.unjammed},
+                    {"warnings", curve.prediction.warnings}});
+  }
+  return ends;
+}
+
+}  // namespace
+
 OrderedJson summary_of(const predict::PredictionFolder& content, const fs::path& output) {
   OrderedJson summary{{"folder", output.string()},
                       {"rung", rung_to_json(content)},
                       {"bands", content.bands},
                       {"rehearsals", content.rehearsals ? fields_to_json(*content.rehearsals) : OrderedJson(nullptr)},
                       {"warnings", content.warnings},
-                      {"failures", fields_to_json(content.failures)}};
+                      {"failures", fields_to_json(content.failures)},
+                      {"ends", ends_to_json(content)}};
   OrderedJson& comparisons = summary["comparisons"] = OrderedJson::array();
   for (const predict::CurveComparison& entry : content.comparisons) {
     if (entry.seed) continue;

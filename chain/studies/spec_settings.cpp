@@ -45,7 +45,7 @@ std::pair<std::string, Json> change_from(const std::string& text) {
     throw InvalidInput(fmt::format("'{}': is no change; give KEY=VALUE", one_line(text, 100)));
   const std::string value = text.substr(at + 1);
   const Json parsed = Json::parse(value, nullptr, false);
-  return {text.substr(0, at), parsed.is_number() || parsed.is_array() ? parsed : Json(value)};
+  return {text.substr(0, at), parsed.is_number() || parsed.is_boolean() || parsed.is_array() ? parsed : Json(value)};
 }
 
 Changes changes_from(const std::vector<std::string>& texts) {

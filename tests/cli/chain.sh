@@ -105,7 +105,7 @@ cp -r out rehearsed
 jq -e '[.rehearsals[] | .name, .kind, .packings] == ["uni", "monotone", 2]' rehearsed/parameters.json >/dev/null || fail "no record"
 jq -e '.rehearsals == null and (.bands | contains("not in them"))' rehearsed/uni/prediction.json >/dev/null || fail "a path spoke for itself"
 "$grainlaw" predict rehearsed/parameters.json other.json -o rehearsed/other >text
-grep -q '^rehearsed 1 paths of all kinds, m = 1' text && jq -e '.rung.rehearsed and .rehearsals.paths == 1' rehearsed/other/prediction.json >/dev/null ||
+grep -q '^rehearsed 1 path of all kinds, m = 1' text && jq -e '.rung.rehearsed and .rehearsals.paths == 1' rehearsed/other/prediction.json >/dev/null ||
   fail "a rehearsal does not speak for another path: $(cat text)"
 width() { tail -n 1 "$1" | cut -d, -f 29; }  # P_star_mean95
 "$grainlaw" predict out/parameters.json other.json -o other >/dev/null

@@ -47,6 +47,17 @@ as_large "$(jq .bytes dry.json)" out/runs out/dataset
   fail "finished runs are not found"
 "$grainlaw" predict out/parameters.json path.json -o out/predictions/mine --dem --dry-run --json >dry.json
 jq -e '.runs == 4' dry.json >/dev/null && [[ ! -e out/predictions ]] || fail "$(cat dry.json)"
+echo '{"particles": 500, "keep": [{"nu": 0.7}]}' >keep.json
+"$grainlaw" check keep.json >text || fail "a TEST is taken for a SPEC: $(cat text)"
+refused_dry() { # words of the refusal, options...: by a dry run as by the command
+  "$grainlaw" predict out/parameters.json "${@:2}" -o none --dry-run >text 2>log && fail "dry run of ${*:2}: $(cat text)"
+  grep -q -- "$1" log || fail "dry run of ${*:2}: $(cat log)"
+}
+refused_dry 'nowhere' path.json --against nowhere
+refused_dry 'measured starts from' path.json --initial measured
+echo '{"initial": {"nu": 0.6}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.1}}]}' >low.json
+refused_dry 'not jammed' low.json
+"$grainlaw" check low.json out/parameters.json >text 2>log && fail "check takes what predict refuses: $(cat text)"
 "$grainlaw" predict out/parameters.json path.json -o out/predictions/mine --dem --seeds 11-12 --quiet >text || fail "the path"
 fits text || fail "predict is wider than 80 columns: $(cat text)"
 jq -e '.seeds == [11, 12]' out/predictions/mine/dem/dataset.json >/dev/null || fail "seeds as a range"

@@ -1,6 +1,7 @@
 #include "app/commands/options.hpp"
 
 #include <numeric>
+#include <optional>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -46,6 +47,19 @@ TEST(Chosen, IsTheIndexOfTheWord) {
   EXPECT_EQ(chosen("--loss", "huber", {"squares", "huber"}), 1u);
   EXPECT_THROW(chosen("--loss", "Huber?", {"squares", "huber"}), CLI::ValidationError);
   EXPECT_THROW(chosen("--loss", "", {"squares", "huber"}), CLI::ValidationError);
+}
+
+TEST(AddNumber, IsDecimalWithALeadingZeroToo) {
+  CLI::App app;
+  int whole = 0;
+  std::optional<double> real;
+  add_number(app, "--whole", whole, 1, 100, "N", "");
+  add_number(app, "--real", real, 0, 100, "X", "");
+  app.parse("--whole 010 --real 08.5");
+  EXPECT_EQ(whole, 10);
+  EXPECT_EQ(real, 8.5);
+  EXPECT_THROW(app.parse("--whole 2.5"), CLI::ValidationError);
+  EXPECT_THROW(app.parse("--whole 101"), CLI::ValidationError);
 }
 
 }  // namespace
