@@ -1,5 +1,7 @@
 #include "python/errors.hpp"
 
+#include <system_error>
+
 #include "app/exit_code.hpp"
 #include "model/vocabulary/error.hpp"
 
@@ -30,6 +32,8 @@ void translate(std::exception_ptr thrown) {
   } catch (const Interrupted& e) {
     PyErr_SetString(interrupted, e.what());
   } catch (const Error& e) {
+    PyErr_SetString(error, e.what());
+  } catch (const std::system_error& e) {  // also of the file system
     PyErr_SetString(error, e.what());
   }
 }

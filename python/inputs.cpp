@@ -129,7 +129,8 @@ std::string text_of(py::handle object, const std::string& name) {
 }
 
 py::array_t<double> numbers_of(py::handle object, const std::string& name, int dimensions) {
-  if (py::hasattr(object, "mask")) refuse(name, "is a masked array, whose mask would be lost; give a plain one");
+  if (py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray")))
+    refuse(name, "is a masked array, whose mask would be lost; give a plain one");
   const auto given = py::array::ensure(object);
   if (!given) refuse(name, fmt::format("is no array; give one of numbers, got {}", shown(object)));
   const char kind = given.dtype().kind();

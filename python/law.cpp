@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/prediction.hpp"
 #include "model/files/execution.hpp"
 #include "model/parameters_file.hpp"
 #include "predict/bands.hpp"
@@ -77,8 +78,15 @@ struct Wanted {
   int per_segment = 0;
   std::vector<predict::OutputPoint> points = {};
   LawState<double> start = {};
+  std::vector<std::string> warnings = {};  ///< of the path
 
   predict::Prediction made(const RunControl& control) const {
+    predict::Prediction prediction = along(control);
+    prediction.warnings.insert(prediction.warnings.begin(), warnings.begin(), warnings.end());
+    return prediction;
+  }
+
+  predict::Prediction along(const RunControl& control) const {
     if (path != nullptr)
       return predict::predict_by_law(rung, law.parameters, law.coupling, *path, start, per_segment, {}, law.range,
                                      control);
@@ -135,6 +143,7 @@ Curve predicted_path(const Law& self, const StrainPath& path, Rung rung, int poi
   } else {
     wanted.path = &path.file.path;
   }
+  wanted.warnings = chain::warnings_along(self.law, path.file);
   return carried_out(wanted);
 }
 
@@ -158,7 +167,8 @@ Batch predicted_batch(const Law& self, py::handle strain, py::handle nu, py::han
         fmt::format("strain: has the shape ({}, {}, {}); give (paths, steps, 6), the components xx, yy, zz, "
                     "yz, xz, xy",
                     paths, steps, strains.shape(2)));
-  const bool scalar = py::isinstance<py::float_>(nu) || py::isinstance<py::int_>(nu);
+  const bool scalar = py::isinstance<py::float_>(nu) || py::isinstance<py::int_>(nu) ||
+                      (py::hasattr(nu, "ndim") && py::int_(nu.attr("ndim")).cast<int>() == 0);
   const std::vector<double> same(scalar ? static_cast<std::size_t>(paths) : 0, scalar ? finite_number(nu, "nu") : 0);
   const auto densities = scalar ? py::array_t<double>() : numbers_of(nu, "nu", 1);
   if (!scalar && densities.shape(0) != paths)
@@ -193,6 +203,8 @@ std::shared_ptr<Law> changed(const Law& self, const py::dict& values) {
     law.covariance.row(static_cast<Eigen::Index>(i)).setZero();
     law.covariance.col(static_cast<Eigen::Index>(i)).setZero();
   }
+  law.rehearsals.clear();
+  law.dataset_digest.clear();
   return std::make_shared<Law>(std::move(law), fs::path(), self.name);
 }
 

@@ -35,20 +35,34 @@ py::object path_to_python(const Path& path) {
   return to_python(json);
 }
 
+/// With what else PATH says.
+py::dict to_dict(const StrainPath& path) {
+  py::dict document = path_to_python(path.file.path);
+  if (!path.file.seeds.empty()) document["seeds"] = path.file.seeds;
+  if (path.file.rows) document["rows"] = *path.file.rows;
+  return document;
+}
+
 void add_path(py::module_& module) {
   plain_class<StrainPath, std::shared_ptr<StrainPath>>(module, "Path", "A strain path, read once for many predictions.")
       .def(py::init([](const py::object& source) { return std::make_shared<StrainPath>(*path_of(source)); }),
            py::arg("source"), "Of a dict or the path of a JSON file.")
       .def_property_readonly("nu", [](const StrainPath& self) { return self.file.path.nu; })
       .def_property_readonly("segments", [](const StrainPath& self) { return self.file.path.segments.size(); })
-      .def("to_dict", [](const StrainPath& self) { return path_to_python(self.file.path); })
+      .def("to_dict", &to_dict)
       .def("__repr__",
            [](const StrainPath& self) {
              return fmt::format("<Path {} from nu = {}, {} segments>", self.name, self.file.path.nu,
                                 self.file.path.segments.size());
            })
-      .def(py::pickle([](const StrainPath& self) { return path_to_python(self.file.path); },
-                      [](const py::object& state) { return std::make_shared<StrainPath>(*path_of(state)); }));
+      .def(py::pickle(
+          [](const StrainPath& self) { return py::make_tuple(to_dict(self), self.name, self.file.warnings); },
+          [](const py::tuple& state) {
+            const auto path = std::make_shared<StrainPath>(*path_of(state[0]));
+            path->name = state[1].cast<std::string>();
+            path->file.warnings = state[2].cast<std::vector<std::string>>();
+            return path;
+          }));
 }
 
 void add_series_type(py::module_& module) {

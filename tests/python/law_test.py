@@ -139,6 +139,22 @@ class Predictions(unittest.TestCase):
         self.assertEqual(found, [True] * 200)
 
 
+class Paths(unittest.TestCase):
+    def test_a_copy_says_the_same(self):
+        path = grainlaw.Path(UNI | {"seeds": [901], "rows": 5})
+        for other in (pickle.loads(pickle.dumps(path)), copy.deepcopy(path), grainlaw.Path(path.to_dict())):
+            self.assertEqual(other.to_dict(), path.to_dict())
+        self.assertEqual((path.to_dict()["seeds"], path.to_dict()["rows"]), ([901], 5))
+
+    def test_what_the_law_does_not_know_of_it_is_said(self):
+        loading = law.predict({**UNI, "initial": {"nu": 0.70, "branch": "loading"}})
+        self.assertTrue(any("initial.branch" in warning for warning in loading.warnings), loading.warnings)
+
+    def test_values_by_hand_have_no_data_behind_them(self):
+        self.assertNotEqual(law.dataset_digest, "")
+        self.assertEqual(law.with_values({"pressure.p0": 0.04}).dataset_digest, "")
+
+
 class Batches(unittest.TestCase):
     def histories(self, paths, steps, scale):
         random = np.random.default_rng(7)
@@ -174,6 +190,24 @@ class Batches(unittest.TestCase):
         for other in (fortran, fortran[::-1][::-1], strain.astype(">f8"), strain.tolist()):
             np.testing.assert_array_equal(law.predict_batch(other, nu, threads=3).P_star, expected)
         np.testing.assert_array_equal(law.predict_batch(strain, np.full(40, 0.74)).P_star, law.predict_batch(strain, 0.74).P_star)
+
+    def test_more_steps_of_one_direction_change_nothing(self):
+        whole = np.array([[[0, 0, -0.13, 0, 0, 0]]])
+        for model in law.models:
+            once = law.predict_batch(whole, 0.70, model, accuracy=1e-10)
+            often = law.predict_batch(whole * np.linspace(0.02, 1, 50)[:, None], 0.70, model, accuracy=1e-10)
+            for name in ("P_star", "sigma_dev", "fabric_dev"):
+                np.testing.assert_allclose(getattr(often, name)[0, -1], getattr(once, name)[0, -1], rtol=1e-6, atol=1e-8)
+
+    def test_scalars_of_numpy_and_what_has_a_method_mask(self):
+        class Column(list):  # as pandas' have
+            def mask(self):
+                return self
+
+        strain, nu = self.histories(2, 2, 0.003)
+        expected = law.predict_batch(strain, [0.74, 0.74]).P_star
+        for given in (np.float64(0.74), np.array(0.74), Column([0.74, 0.74])):
+            np.testing.assert_array_equal(law.predict_batch(strain, given).P_star, expected)
 
     def test_steps_without_strain_change_nothing(self):
         strain, nu = self.histories(5, 2, 0.003)
