@@ -90,8 +90,9 @@ std::string comparison_text(const predict::CurveComparison& entry) {
   const auto share = [](double x) { return std::isfinite(x) ? fmt::format("{:.0f} %", 100 * x) : std::string(); };
   for (const auto& q : entry.comparison.quantities) {
     if (q.rows == 0) continue;  // the law or the runs do not tell it
-    text += fmt::format("{:<9} {:<10} {:<8} {:>+9.2g} {:>8.1f} % {:>12} {:>12}\n", std::exchange(model, ""),
-                        std::exchange(initial, ""), q.quantity, q.bias, 100 * q.normalised_rms, share(q.coverage_mean),
+    const std::string bias = std::abs(q.bias) < 1e-4 ? fmt::format("{:+.1g}", q.bias) : fmt::format("{:+.4f}", q.bias);
+    text += fmt::format("{:<9} {:<10} {:<8} {:>9} {:>8.1f} % {:>12} {:>12}\n", std::exchange(model, ""),
+                        std::exchange(initial, ""), q.quantity, bias, 100 * q.normalised_rms, share(q.coverage_mean),
                         share(q.coverage_single));
   }
   return text;
