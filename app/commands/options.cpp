@@ -32,7 +32,8 @@ CLI::Validator between(double least, double most) {
   const std::string range = fmt::format("{:g} to {:g}", least, most);
   const auto check = [least, most, range](const std::string& text) -> std::string {
     const auto number = number_of<double>(text);
-    if (number && *number >= least && *number <= most) return "";
+    const bool octal = text.size() > 1 && text[0] == '0' && text[1] != '.' && text[1] != 'e';
+    if (number && *number >= least && *number <= most && !octal) return "";
     return fmt::format("got '{}'; give a number, {}", one_line(text, 60), range);
   };
   return {check, range, range};

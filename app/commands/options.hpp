@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "model/files/number_text.hpp"
 #include "model/vocabulary/enum_names.hpp"
 
 namespace grainlaw::app {
@@ -18,7 +17,7 @@ std::string choice_type(const std::vector<std::string>& words);
 /// Index of `text` in `words`. Throws CLI::ValidationError that names the option, the words and the one that may be meant.
 std::size_t chosen(const std::string& option, const std::string& text, const std::vector<std::string>& words);
 
-/// Checks that a number lies in [least, most]; its description is "LEAST to MOST".
+/// Checks that a number lies in [least, most] and begins with no idle zero, which would make it octal; its description is "LEAST to MOST".
 CLI::Validator between(double least, double most);
 
 /// Refuses an empty word, as a variable of the shell leaves it that is not set.
@@ -49,20 +48,7 @@ CLI::Option* add_value(CLI::App& command, const std::string& name, Value& value,
 template <class Value>
 CLI::Option* add_number(CLI::App& command, const std::string& name, Value& value, double least, double most,
                         const std::string& type, const std::string& description) {
-  const auto held = [](auto& of) {
-    if constexpr (requires { *of; })
-      return *of;
-    else
-      return of;
-  };
-  using Number = decltype(held(value));
-  const auto set = [name, &value](const std::string& text) {  // decimal, where CLI11 takes 010 for 8
-    if (const auto number = number_of<Number>(text))
-      value = *number;
-    else
-      throw CLI::ValidationError(name, "got '" + text + "'; give a whole number");
-  };
-  return command.add_option_function<std::string>(name, set, description)->type_name(type)->check(between(least, most));
+  return add_value(command, name, value, type, description)->check(between(least, most));
 }
 
 /// An option that takes seeds and ranges of seeds.

@@ -1,7 +1,6 @@
 #include "app/commands/options.hpp"
 
 #include <numeric>
-#include <optional>
 
 #include "tests/support/temporary_folder.hpp"
 
@@ -49,17 +48,18 @@ TEST(Chosen, IsTheIndexOfTheWord) {
   EXPECT_THROW(chosen("--loss", "", {"squares", "huber"}), CLI::ValidationError);
 }
 
-TEST(AddNumber, IsDecimalWithALeadingZeroToo) {
+TEST(AddNumber, IsNeverOctal) {
   CLI::App app;
   int whole = 0;
-  std::optional<double> real;
+  double real = -1;
   add_number(app, "--whole", whole, 1, 100, "N", "");
   add_number(app, "--real", real, 0, 100, "X", "");
-  app.parse("--whole 010 --real 08.5");
+  EXPECT_THROW(app.parse("--whole 010"), CLI::ValidationError) << "8 to the parser of numbers";
+  app.parse("--whole 10 --real 0.5");
   EXPECT_EQ(whole, 10);
-  EXPECT_EQ(real, 8.5);
-  EXPECT_THROW(app.parse("--whole 2.5"), CLI::ValidationError);
-  EXPECT_THROW(app.parse("--whole 101"), CLI::ValidationError);
+  EXPECT_EQ(real, 0.5);
+  app.parse("--real 0");
+  EXPECT_EQ(real, 0);
 }
 
 }  // namespace
