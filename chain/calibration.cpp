@@ -133,10 +133,8 @@ void save(const Fitted& all, const fit::CalibrationOptions& options, const fs::p
   write_calibration(output / "calibration.json", all.calibration, options, all.modes, origin);
   write_parameters(output / "parameters.json", {all.calibration.law, Json(origin)});
   for (const fit::Stage& stage : all.calibration.stages) {
-    if (stage.converged) continue;
-    std::string why = stage.termination;
-    if (why.starts_with("CONVERGENCE: ")) why = "the gradient does not vanish; " + why.substr(13);
-    execution.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, why));
+    if (!stage.converged)
+      execution.watch.log(fmt::format("stage '{}' of the fit did not converge: {}", stage.name, stage.termination));
   }
   for (const std::string& warning : all.calibration.warnings) execution.watch.log("warning: " + warning);
 }

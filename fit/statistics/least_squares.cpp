@@ -261,10 +261,8 @@ Solution solve(const Problem& problem, int threads, const std::string& stage, co
             : fmt::format("CONVERGENCE: the cost changed by less than {:g} of itself in {} iterations.", kSettled,
                           effort.iterations);
     if (solution.converged) break;
-    if (next == held && stopped) {  // no better by trying again
-      solution.termination += " (but the gradient does not vanish)";
-      break;
-    }
+    if (stopped || flat) solution.termination += " (but the gradient does not vanish)";
+    if (next == held && stopped) break;  // no better by trying again
     held = next;
   }
   solution.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
