@@ -105,13 +105,9 @@ struct Shown {
 void choose_length(const Path& path, Shown& shown) {
   const std::vector<StraightSegment> segments = resolve(path);
   std::vector<double> before{0};
-  bool rests = false;
-  for (const StraightSegment& segment : segments) {
-    const Eigen::Matrix3d& D = segment.direction.tensor;
-    before.push_back(before.back() + segment.length * std::abs(D.trace()));
-    rests = rests || deviator(D).norm() < 1e-9 * D.norm();
-  }
-  if (!rests) return;
+  for (const StraightSegment& segment : segments)
+    before.push_back(before.back() + segment.length * std::abs(segment.eps_vol_rate()));
+  if (std::ranges::all_of(segments, shears, &StraightSegment::direction)) return;
   shown.over = Over::length;
   shown.segments = segments;
   shown.volume_before = before;
@@ -122,16 +118,14 @@ Shown shown_of(const std::vector<PredictionFolder>& predictions, std::size_t ind
   Shown shown{prediction, law.parameters, chain::dem_records(prediction), other_runs(predictions, index)};
   std::vector<TestRecord> all = shown.dem;
   for (const OtherRuns& other : shown.others) all.insert(all.end(), other.tests.begin(), other.tests.end());
-  bool grows = std::ranges::all_of(all, [](const TestRecord&test) { return strain_grows(test.rows); }), shears = false;
+  bool grows = std::ranges::all_of(all, [](const TestRecord& test) { return strain_grows(test.rows); });
+  double sheared = 0;
   for (const PredictedCurve& drawn : prediction.curves) {
     grows = grows && strain_grows(drawn.prediction.rows);
-    for (const PredictedRow& row : drawn.prediction.rows) shears = shears || row.shear_path > kNoShear;
+    for (const PredictedRow& row : drawn.prediction.rows) sheared = std::max(sheared, row.shear_path);
   }
-  if (!shears)
-    shown.over = Over::density;
-  else if (!grows)
-    shown.over = Over::shear;
-  if (shears && !law_decides(prediction.path)) choose_length(prediction.path, shown);
+  shown.over = sheared <= kNoShear ? Over::density : grows ? Over::strain : Over::shear;
+  if (sheared > kNoShear && !law_decides(prediction.path)) choose_length(prediction.path, shown);
   const double least = kAboveJamming * law.parameters.isotropic.pressure.nu_c;
   for (const PredictedCurve& drawn : prediction.curves) {
     for (const PredictedRow& row : drawn.prediction.rows) shown.by_ratio = shown.by_ratio && row.nu > least;
