@@ -312,16 +312,11 @@ SettingsStudy study_from_json(const Json& document) {
   study.kind = document.at("study");
   study.error = document.at("error");
   study.packings = study.kind == "dem" ? Packings::given : Packings::chosen;
-  study.base = document.at("base");
   for (const Json& object : document.at("settings")) {
     SettingResult& r = study.results.emplace_back();
     r.outcome.name = object.at("setting");
-    r.outcome.cost = {object.at("particle_steps"), object.at("seconds"), object.at("fit_seconds")};
+    r.outcome.cost.particle_steps = object.at("particle_steps");
     r.outcome.energy_residual = object.at("energy_residual");
-    r.outcome.note = object.at("note");
-    r.error = number_or_nan(object.at("error"));
-    r.floor = number_or_nan(object.at("floor"));
-    r.sampling = number_or_nan(object.at("sampling"));
     r.noise = number_or_nan(object.at("noise"));
     r.reached = number_or_nan(object.at("reached"));
     r.reached_error = number_or_nan(object.at("reached_standard_error"));
