@@ -138,6 +138,22 @@ TEST(ReportWarnings, OneCauseIsOneRowWithWhatItCosts) {
   ASSERT_EQ(table.notes.size(), table.rows.size());
 }
 
+TEST(ReportWarnings, CausesAreNotMistakenForOneAnother) {
+  chain::ReportInput input = test::report_scene();
+  input.predictions.resize(1);
+  input.predictions[0].warnings = {
+      "the law was calibrated without fabric: it says nothing of it",
+      "the path spins, which nothing that was calibrated or rehearsed does; how far the law is off there is not known",
+      "runs are on packings that were fitted, too (seeds 1): they agree better than new ones would"};
+  input.predictions[0].curves.front().prediction.warnings = {
+      "nu = 0.9 lies outside the calibrated range 0.67-0.82"};
+  input.predictions[0].failures = {{Rung::memory, predict::Initial::law, {}, "the run tells no fabric"}};
+  const std::vector<WarningGroup> groups = warning_groups(input);
+  for (const char* cause : {"no fabric in the data", "paths with spin", "runs on packings that were fitted",
+                            "paths beyond the calibrated range", "curves that are left out"})
+    EXPECT_NE(group_of(groups, cause), nullptr) << cause;
+}
+
 TEST(ReportWarnings, InertiaIsCountedWhereThePackingIsJammed) {
   chain::ReportInput input = test::report_scene();
   input.predictions.clear();
