@@ -28,17 +28,17 @@ struct ReportInput {
   fit::Calibration calibration;
   fit::ModeComparison modes;                           ///< beside what was published
   std::vector<predict::PredictionFolder> predictions;  ///< by name
-  std::set<std::string> strange;         ///< names of predictions by another law, which say nothing of this one
+  std::set<std::string> strange;         ///< predictions by another law, which say nothing of this one
   std::string no_predictions;            ///< why there are none, or the command that makes them; else empty
   std::vector<FittedPath> fitted_paths;  ///< the law along the shear tests
   std::vector<std::pair<std::string, SettingsStudy>>
-      studies;                                 ///< of studies/NAME/study.json that compare settings, by name
-  std::string calibrate_command;               ///< that makes the folder's files anew from its data set
+      studies;                            ///< of studies/NAME/study.json that compare settings, by name
+  std::string calibrate_command;          ///< that makes the folder's files anew from its data set
   std::optional<dem::ShearPictures> pictures;  ///< of one packing; older data sets have none
-  std::vector<Fact> provenance;                ///< commands, versions, seconds
-  std::vector<Fact> spec;                      ///< of the data set, resolved; empty when unknown
-  std::vector<std::string> warnings;           ///< files that do not belong together
-  std::vector<std::string> run_warnings;       ///< "test: warning" of the DEM runs
+  std::vector<Fact> provenance;           ///< commands, versions, seconds
+  std::vector<Fact> spec;                 ///< of the data set, resolved; empty when unknown
+  std::vector<std::string> warnings;      ///< files that do not belong together
+  std::vector<std::string> run_warnings;  ///< "test: warning" of the DEM runs
 };
 
 /// Reads the folder `dir` of a calibration. A missing file is InvalidInput that names the command which makes it; predictions

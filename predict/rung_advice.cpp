@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace grainlaw::predict {
@@ -63,10 +62,8 @@ RungRecommendation recommended_rung(const std::vector<Rehearsal>& rehearsals,
       if (best.rms[q] > 0) times.push_back(fmt::format("{:.1f}", table[i].rms[q] / best.rms[q]));
     }
     if (times.empty()) continue;
-    const std::string last = std::exchange(times.back(), "");
-    times.pop_back();
-    why += fmt::format("; {} errs {}{}{} times as much", to_string(table[i].rung), fmt::join(times, ", "),
-                       times.empty() ? "" : " and ", last);
+    why += fmt::format("; {} errs {}{}{} times as much", to_string(table[i].rung),
+                       fmt::join(times.begin(), times.end() - 1, ", "), times.size() > 1 ? " and " : "", times.back());
   }
   return {best.rung, true, why};
 }

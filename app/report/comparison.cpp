@@ -37,8 +37,8 @@ Table parameter_pairs(const CalibratedLaw& ours, const CalibratedLaw& other) {
     if (pair.ours.status != Status::not_identified || pair.other.status != Status::not_identified)
       pairs.push_back(pair);
   }
-  const auto beyond = std::ranges::count_if(pairs, [](const Pair&pair) { return std::abs(pair.distance()) > 2; }),
-             judged = std::ranges::count_if(pairs, [](const Pair&pair) { return std::isfinite(pair.distance()); });
+  const auto beyond = std::ranges::count_if(pairs, [](const Pair& pair) { return std::abs(pair.distance()) > 2; });
+  const auto judged = std::ranges::count_if(pairs, [](const Pair& pair) { return std::isfinite(pair.distance()); });
   return table_of(std::to_string(beyond) + " of " + std::to_string(judged) +
                       " parameters that have an error in both differ by more than twice the standard error of the "
                       "difference. Errors count as "

@@ -367,8 +367,7 @@ Table errors_by_kind(const std::vector<PathError>& errors) {
   };
   return table_of(
       "By kind of path: error of the recommended rung and its range over the paths; predicted ones by their single "
-      "runs, "
-      "rehearsed ones by the mean of the runs",
+      "runs, rehearsed ones by the mean of the runs",
       "", kinds,
       {{"kind (paths)", Content::words,
         [](const OfKind& row) { return Cell(fmt::format("{} ({})", to_string(row.kind), row.paths)); }},
