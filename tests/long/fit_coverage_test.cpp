@@ -36,6 +36,15 @@ TEST(CoverageOfPackingsThatDiffer, IsOfWhatNoNoiseGives) {
     EXPECT_LE(std::abs(count.distance()), 4 * std::sqrt(1. / study.sets)) << parameter;
 }
 
+// The intervals of Huber's loss (F7), by the same lines. Moderated ones are in the default suite.
+TEST(CoverageByHubersLoss, F7IsotropicLaws) {
+  const CoverageStudy white{1000, 10, 0, 0, 40000, fit::Loss::huber};
+  testing::expect_coverage("F7.isotropic." + white.name(), testing::coverage_of_isotropic_laws(white), 0.93, 0.97);
+  const CoverageStudy correlated{1000, 3, 0.9, 0, 50000, fit::Loss::huber};
+  testing::expect_coverage("F7.isotropic." + correlated.name(), testing::coverage_of_isotropic_laws(correlated), 0.90,
+                           1);
+}
+
 // Moderated (docs/theory/fit.md): from two packings on, both losses, over several priors. Of ten packings, and of five by Huber's
 // loss, 1000 sets, laws over density 8000: 300 and 2000 once left a parameter so near the line that chance decided. Each was decided on
 // before more were seen.

@@ -103,15 +103,6 @@ TEST(MeanOverSets, OfThePressureAlongUnloadingIsWhatWasPutIn) {
   EXPECT_LE(std::abs(coverage.counts().at("pressure.p0").distance()), 0.28);
 }
 
-// The intervals of Huber's loss (F7), by the same lines.
-TEST(CoverageByHubersLoss, F7IsotropicLaws) {
-  const CoverageStudy white{1000, 10, 0, 0, 40000, fit::Loss::huber};
-  testing::expect_coverage("F7.isotropic." + white.name(), testing::coverage_of_isotropic_laws(white), 0.93, 0.97);
-  const CoverageStudy correlated{1000, 3, 0.9, 0, 50000, fit::Loss::huber};
-  testing::expect_coverage("F7.isotropic." + correlated.name(), testing::coverage_of_isotropic_laws(correlated), 0.90,
-                           1);
-}
-
 // Moderated by the variances of 64 packings of the same kind: two packings hold what they promise, and with an interval that
 // says something. 500 sets: of a true 95 % one parameter in 10^4 would fall below .913. Full numbers are in tests/long.
 class CoverageModerated : public ::testing::TestWithParam<std::tuple<int, fit::Loss>> {};
