@@ -44,7 +44,7 @@ cmp pictures.json out/dataset/pictures.json && cmp pictures.json single/dataset/
   fail "pictures differ: on one thread, from the store, or from the data set"
 "$grainlaw" calibrate --dataset out -o refit --coupling single --starts 2 --quiet >/dev/null || [[ $? == 3 ]]
 grep -q '"coupling": "single"' refit/parameters.json && grep -q '"tried": 2' refit/calibration.json || fail "coupling, starts"
-"$grainlaw" calibrate --dataset out -o refit --loss huber --quiet >/dev/null || [[ $? == 3 ]]
+"$grainlaw" calibrate --dataset out -o refit --loss huber --coupling single --quiet >/dev/null || [[ $? == 3 ]]
 grep -q '"loss": "huber"' refit/calibration.json || fail "loss"
 grep -q '"leave_one_out": null' refit/calibration.json || fail "checks that nobody asked for"
 

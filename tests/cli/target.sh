@@ -3,7 +3,7 @@ set -euo pipefail
 grainlaw=$1
 fail() { echo "FAIL: $*" >&2; exit 1; }
 cat >spec.json <<'JSON'
-{"particles": 300, "seeds": [5, 1], "strain_rate": 3000, "rows": 40, "nu_end": 0.67, "densities": [0.70, 0.74, 0.79],
+{"particles": 300, "seeds": [5, 1], "strain_rate": 6000, "rows": 40, "nu_end": 0.67, "densities": [0.70, 0.74, 0.79],
  "tests": [{"mode": "ISO", "role": "calibration"}, {"mode": "D2", "role": "calibration"},
            {"mode": "UNI", "density": 0.72, "strain": 0.02, "role": "validation"}]}
 JSON
@@ -21,7 +21,7 @@ jq -e '.rounds[-1] | .error as $e | .quantities[0] | .quantity == "P_star" and .
 grep -q '^sheared   at 0.71, 0.737, 0.763, 0.79: ' text || fail "densities: $(cat text)"
 # the frame stays, what the plan chose is listed; the seeds follow the frame's
 jq -e '.overrides | keys == ["densities", "particles", "seeds", "tests"]' loose/plan.json >/dev/null || fail "$(jq -c .overrides loose/plan.json)"
-jq -e '.seeds == [5, 1, 6, 7] and .densities[0] == 0.71 and .strain_rate == 3000' loose/spec.resolved.json >/dev/null || fail spec
+jq -e '.seeds == [5, 1, 6, 7] and .densities[0] == 0.71 and .strain_rate == 6000' loose/spec.resolved.json >/dev/null || fail spec
 # the path was rehearsed on every packing, unfitted, and says how far off the law is
 validation_tests() { jq -r '.tests[] | select(.role == "validation") | .name' "$1/dataset.json" | sed 's/-.*//' | sort | uniq -c | xargs; }
 jq -e '.rounds[0].quantities[0] | .discrepancy >= .discrepancy_min and .discrepancy_min >= 0' loose/plan.json >/dev/null || fail "$(cat loose/plan.json)"
@@ -55,7 +55,7 @@ jq -e '.outcome != "met" and (.rounds | length) == 1' json >/dev/null || fail "$
 # tests without D2-ISO give the reduced law alone, which does not know that pressure rises in shear at constant volume
 echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "D2", "extent": {"eps_dev": 0.2}}]}' >shear.json
 code=0
-"$grainlaw" calibrate spec.json --for shear.json --quantity P_star --threads 2 -o discrepant --target-error 0.02 >text 2>log || code=$?
+"$grainlaw" calibrate spec.json --for shear.json --quantity P_star --threads 2 -o discrepant --target-error 0.04 >text 2>log || code=$?
 [[ $code == 3 ]] || fail "exit $code: $(tail -1 log)"
 jq -e '.outcome | test("discrepancy")' discrepant/plan.json >/dev/null || fail "$(cat discrepant/plan.json)"
 jq -e '.rounds[-1] | .model == "reduced" and .quantities[0].discrepancy_min > 0.02' discrepant/plan.json >/dev/null || fail "$(cat discrepant/plan.json)"

@@ -34,7 +34,7 @@ struct Scene {
                     Branch::unloading,
                     {{Mode::D2, direction_of(Mode::D2, "xyz", false), ExtentKind::eps_dev, 0.03},
                      {Mode::ISO, direction_of(Mode::ISO, "xyz", false), ExtentKind::target_nu, 0.76}}});
-    options.drive.strain_rate = 5000;
+    options.drive.strain_rate = 10000;
     options.drive.transport = transport;
     options.drive.profile = profile;
     options.engine.skin = 0.01;  // a list that is rebuilt often
