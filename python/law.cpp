@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chain/prediction.hpp"
 #include "model/files/execution.hpp"
 #include "model/parameters_file.hpp"
 #include "predict/bands.hpp"
@@ -78,15 +77,8 @@ struct Wanted {
   int per_segment = 0;
   std::vector<predict::OutputPoint> points = {};
   LawState<double> start = {};
-  std::vector<std::string> warnings = {};  ///< of the path
 
   predict::Prediction made(const RunControl& control) const {
-    predict::Prediction prediction = along(control);
-    prediction.warnings.insert(prediction.warnings.begin(), warnings.begin(), warnings.end());
-    return prediction;
-  }
-
-  predict::Prediction along(const RunControl& control) const {
     if (path != nullptr)
       return predict::predict_by_law(rung, law.parameters, law.coupling, *path, start, per_segment, {}, law.range,
                                      control);
@@ -143,19 +135,23 @@ Curve predicted_path(const Law& self, const StrainPath& path, Rung rung, int poi
   } else {
     wanted.path = &path.file.path;
   }
-  wanted.warnings = chain::warnings_along(self.law, path.file);
   return carried_out(wanted);
 }
 
-Curve predicted(const Law& self, py::handle path, py::handle model, py::handle points, bool bands, py::handle start) {
-  const Rung rung = rung_of(self, model);
+Curve predicted(const std::shared_ptr<Law>& self, py::handle path, py::handle model, py::handle points, bool bands,
+                py::handle start) {
+  const Rung rung = rung_of(*self, model);
   const Initial initial = choice_of<Initial>(start, "start");
   if (py::isinstance<Test>(path))
-    return predicted_rows(self, path.cast<const Test&>().get().record, rung, initial, bands);
+    return predicted_rows(*self, path.cast<const Test&>().get().record, rung, initial, bands);
   if (initial == Initial::measured)
     throw InvalidInput("start: 'measured' is that of a Test; give one in place of the path");
-  return predicted_path(self, *path_of(path), rung, static_cast<int>(whole_number(points, "points", 1, 1'000'000)),
-                        bands);
+  const std::shared_ptr<const StrainPath> along = path_of(path);
+  Curve curve =
+      predicted_path(*self, *along, rung, static_cast<int>(whole_number(points, "points", 1, 1'000'000)), bands);
+  curve.law = self;
+  curve.path = along;
+  return curve;
 }
 
 Batch predicted_batch(const Law& self, py::handle strain, py::handle nu, py::handle model, py::handle accuracy,

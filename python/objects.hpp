@@ -41,6 +41,8 @@ struct Curve {
   std::shared_ptr<const predict::Prediction> prediction;
   predict::Initial initial = predict::Initial::law;
   std::optional<std::uint64_t> seed;
+  std::shared_ptr<const Law> law = nullptr;          ///< of one in memory: warnings are looked up when asked for
+  std::shared_ptr<const StrainPath> path = nullptr;  ///< likewise
 };
 
 /// grainlaw.Series.

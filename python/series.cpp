@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "chain/prediction.hpp"
 #include "model/files/fields_json.hpp"
 #include "model/files/path_json.hpp"
 #include "python/columns.hpp"
@@ -127,6 +128,13 @@ void add_dataset(py::module_& module) {
       .def_property_readonly("digest", [](const Data& self) { return self->digest; });
 }
 
+std::vector<std::string> warnings_of(const Curve& self) {
+  std::vector<std::string> warnings;
+  if (self.path) warnings = chain::warnings_along(self.law->law, self.path->file);
+  warnings.insert(warnings.end(), self.prediction->warnings.begin(), self.prediction->warnings.end());
+  return warnings;
+}
+
 void add_prediction(py::module_& module) {
   auto type = plain_class<Curve>(module, "Prediction", "The law along a path: read-only arrays by the CSV's names.");
   add_columns<predict::PredictedRow>(
@@ -137,7 +145,7 @@ void add_prediction(py::module_& module) {
       .def_property_readonly("unjammed", [](const Curve& self) { return self.prediction->unjammed; })
       .def_property_readonly("events",
                              [](const Curve& self) { return to_python(fields_to_json(self.prediction->events)); })
-      .def_property_readonly("warnings", [](const Curve& self) { return self.prediction->warnings; })
+      .def_property_readonly("warnings", &warnings_of)
       .def_property_readonly("statistics",
                              [](const Curve& self) { return to_python(fields_to_json(self.prediction->statistics)); })
       .def("__repr__", [](const Curve& self) {
