@@ -80,19 +80,22 @@ friction() {
 # What Python adds to a call of the shipped data's law, which was rehearsed, and how soon it stops; both programs in turns on one
 # core. 5e-5 yardsticks are 5 us where the yardstick is .1 s.
 python_calls() {
-  local line value
+  local line judged=0
   "$bin/grainlaw" calibrate --dataset examples/paper/data/dataset -o "$work/rehearsed" --quiet >/dev/null
   tests_of python '^python\.' 8
   figure python.interrupt_to_end.seconds "$(sed -n 's/.*figure python.interrupt.seconds \([0-9.]*\).*/\1/p' "$work/python.txt")" "<=1"
   while read -r line; do
     case $line in
-      overhead.*)
-        value=$(awk -v us="${line##* }" 'BEGIN { print (us > 0 ? 1e-6 * us : 1e-9) }')
-        figure_of_time "python.${line%% *}" "$value" "<=5e-5"
+      overhead.*)  # a difference, which may be negative
+        figure "python.${line%% *}.us" "${line##* }" stated
+        figure "python.${line%% *}.yardsticks" "$(awk -v us="${line##* }" -v yardstick="$(yardstick)" 'BEGIN { printf "%.4g", 1e-6 * us / yardstick }')" "<=5e-5"
         ;;
       batch.speed*) figure python.batch.speed_over_cpp "${line##* }" ">=0.9" ;;
+      *) continue ;;
     esac
+    judged=$((judged + 1))
   done < <(PYTHONPATH=build/release/python taskset -c 0 $python tests/bench/python_law.py "$bin/bench_law_calls" "$work/rehearsed/parameters.json")
+  figure python.calls_judged $judged ">=5"  # none where the program failed
 }
 
 # What frames on the way of D2 cost, 1000 spheres, defaults otherwise: the command with and without, in turns on one core, least times
