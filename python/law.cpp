@@ -138,17 +138,21 @@ Curve predicted_path(const Law& self, const StrainPath& path, Rung rung, int poi
   return carried_out(wanted);
 }
 
+constexpr std::int64_t kPointsOfSegment = 200;  // as in files of a prediction
+
 Curve predicted(const std::shared_ptr<Law>& self, py::handle path, py::handle model, py::handle points, bool bands,
                 py::handle start) {
   const Rung rung = rung_of(*self, model);
   const Initial initial = choice_of<Initial>(start, "start");
-  if (py::isinstance<Test>(path))
+  if (py::isinstance<Test>(path)) {
+    if (!points.is_none()) throw InvalidInput("points: a Test is predicted at its own rows; leave points out");
     return predicted_rows(*self, path.cast<const Test&>().get().record, rung, initial, bands);
+  }
   if (initial == Initial::measured)
     throw InvalidInput("start: 'measured' is that of a Test; give one in place of the path");
   const std::shared_ptr<const StrainPath> along = path_of(path);
-  Curve curve =
-      predicted_path(*self, *along, rung, static_cast<int>(whole_number(points, "points", 1, 1'000'000)), bands);
+  const auto each = points.is_none() ? kPointsOfSegment : whole_number(points, "points", 1, 1'000'000);
+  Curve curve = predicted_path(*self, *along, rung, static_cast<int>(each), bands);
   curve.law = self;
   curve.path = along;
   return curve;
@@ -310,8 +314,8 @@ void add_law(py::module_& module) {
           },
           py::arg("file"), "Writes parameters.json.")
       .def("predict", &predicted, py::arg("path"), py::arg("model") = py::none(), py::kw_only(),
-           py::arg("points") = 200, py::arg("bands") = false, py::arg("start") = "law",
-           "The law along a path, or at the rows of a Test. In memory; grainlaw.predict writes files.")
+           py::arg("points") = py::none(), py::arg("bands") = false, py::arg("start") = "law",
+           "The law at points of each segment (200), or at the rows of a Test. grainlaw.predict writes files.")
       .def("predict_batch", &predicted_batch, py::arg("strain"), py::arg("nu"), py::arg("model") = py::none(),
            py::kw_only(), py::arg("accuracy") = 1e-8, py::arg("threads") = py::none(),
            "The law along many strain histories, from arrays of (paths, steps, 6) and (paths,).")

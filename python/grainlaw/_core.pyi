@@ -162,7 +162,7 @@ class CalibratedLaw:
         path: Union[Path, Test, _Document],
         model: Optional[_Model] = None,
         *,
-        points: int = 200,
+        points: Optional[int] = None,
         bands: bool = False,
         start: _Start = "law",
     ) -> Prediction: ...

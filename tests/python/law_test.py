@@ -118,6 +118,10 @@ class Predictions(unittest.TestCase):
         self.assertEqual(curve.P_star[0], test.series.P_star[0])
         with self.assertRaisesRegex(grainlaw.InvalidInput, "Test"):
             law.predict(UNI, start="measured")
+        with self.assertRaisesRegex(grainlaw.InvalidInput, "points: a Test is predicted at its own rows"):
+            law.predict(test, points=50)
+        self.assertEqual(len(law.predict(UNI, points=None)), len(law.predict(UNI)))
+        self.assertEqual(law.predict(UNI, points=50).rows, 51)
 
     def test_the_law_may_decide_the_strain(self):
         drained = {"initial": {"nu": 0.74}, "segments": [
