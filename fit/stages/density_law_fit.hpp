@@ -1,7 +1,7 @@
 #pragma once
 // Eq. (20), Q(nu) = Q_limit + Q_c exp(-alpha (nu/nu_c - 1)), over the values that the shear tests gave for s_max, beta_s,
-// F_max and beta_F. nu_c is given, not fitted: it is degenerate with Q_c and alpha. Each value weighs by its own magnitude
-// (at least a fifth of the mean), since rates scatter in proportion to their size.
+// F_max and beta_F. nu_c is given, not fitted: it is degenerate with Q_c and alpha. Each value weighs by the law's magnitude
+// there so far (at least a fifth of the mean), since rates scatter in proportion to their size.
 
 #include "fit/data/density_series.hpp"
 #include "fit/stages/shear_fit.hpp"

@@ -70,7 +70,7 @@ struct RatioOfTest {
 std::string evolution_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories, each segment from its measured start: P* of ISO unloading (nu >= {:g}, start on Eq. (14)) "
-      "relative to the mean of the tests, scale {:g}; s_par scale {:g} and F_par scale {:g} in shear, at constant "
+      "relative to the law so far, scale {:g}; s_par scale {:g} and F_par scale {:g} in shear, at constant "
       "volume 0 < eps_dev <= {:g} and, with {:g} times the weight, eps_dev >= {:g}, elsewhere all rows; P* in shear is "
       "shown without weight because Eq. (16) has no dilatancy",
       options.iso_nu_min, options.pressure_scale, options.stress_scale, options.fabric_scale, options.rate_window,

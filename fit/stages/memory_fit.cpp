@@ -141,9 +141,9 @@ void withdraw_vague(StageFit& fit) {
 std::string memory_window(const CalibrationOptions& options) {
   return fmt::format(
       "all trajectories with shear, each segment from its measured start and each packing at its own density: at "
-      "constant volume P* of all rows relative to the mean, scale {:g}, s_par of eps_dev <= {:g} and with the same "
-      "weight of the rest, scale {:g}, F_par of "
-      "eps_dev <= {:g}, scale {:g}; where the volume changes s_par and F_par of all rows",
+      "constant volume, of the rows of evolution, P* relative to the mean, scale {:g}, s_par of eps_dev <= {:g} and "
+      "with the same weight of the rest, scale {:g}, F_par of eps_dev <= {:g}, scale {:g}; where the volume changes "
+      "s_par and F_par of all rows",
       options.pressure_scale, options.stiffness_window, options.stress_scale, options.lag_window, options.fabric_scale);
 }
 

@@ -12,7 +12,7 @@ namespace {
 std::vector<Deviator<double>> axes_of(const TestRecord& test) {
   std::vector<Deviator<double>> axes;
   for (const PathSegment& segment : test.path.segments) {
-    Deviator<double> n = law_direction(segment.direction).N;
+    Deviator<double> n = path_direction(segment.direction.tensor).N;
     for (const Deviator<double>& axis : axes) n -= axis * axis.dot(n);
     if (n.norm() > 1e-6) axes.push_back(n.normalized());
   }
@@ -37,7 +37,7 @@ Trajectory segment_of(const TestRecord& test, int segment, std::size_t first, st
   const Eigen::Matrix3d strain_start = test.rows.front().strain.tensor - start.strain.tensor;  // compression positive
   t.dev_start = deviator<double>(strain_start);
   t.vol_start = strain_start.trace();
-  t.direction = law_direction(StrainRate{D});
+  t.direction = path_direction(D);
   t.axes = axes_of(test);
   t.starts_on_law = t.axes.empty();
   if (t.starts_on_law && !t.start.F.allFinite()) t.start.F.setZero();  // isotropic compression does not read it

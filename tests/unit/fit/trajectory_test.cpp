@@ -131,6 +131,19 @@ TEST(Trajectory, SegmentsOfAnotherModeAddTheirOwnAxis) {
               0, 1e-12);
 }
 
+// As predictions have it (path_direction()), so that a law is fitted to what it predicts.
+TEST(Trajectory, ShearBelowAThousandthOfTheVolumeStrainIsNone) {
+  testing::SyntheticDataset set(testing::synthetic_truth(), {});
+  TestRecord record = set.isotropic_unloading(1);
+  record.path.segments[0].direction.tensor(2, 2) *= 1 + 1e-6;
+  const TestRecord shear = set.test("d2", 1, 0.70, {testing::synthetic_segment(Mode::D2, ExtentKind::eps_dev, 0.3)});
+  const std::vector<Trajectory> all = trajectories_of(check_and_sort({record, shear}), 0.6649, {});
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_TRUE(all[0].axes.empty());
+  EXPECT_EQ(all[0].direction.de, 0);
+  EXPECT_TRUE(all[0].starts_on_law);
+}
+
 TEST(Trajectory, RowsBelowJammingEndIt) {
   testing::SyntheticOptions options;
   options.rows = 50;
