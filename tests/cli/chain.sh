@@ -76,6 +76,9 @@ diff <(jq .comparisons same/comparison.json) <(jq .comparisons out/predictions/u
 code=0
 "$grainlaw" predict out/parameters.json path.json -o bad --against out 2>err || code=$?
 [[ $code == 2 ]] && grep -q 'is of role calibration' err && [[ ! -e bad ]] || fail "calibration tests were compared with"
+sed 's/{"mode": *"UNI"/{"rate_tensor": [[0,0,0],[0,0,0],[0,0,-1]]/' path.json >same.json
+grep -q rate_tensor same.json && "$grainlaw" predict out/parameters.json same.json -o by-rate --against out/predictions/uni >/dev/null 2>log ||
+  fail "--against the same path in other words: $(cat log)"
 sed 's/0.80/0.79/' path.json >other.json
 code=0
 "$grainlaw" predict out/parameters.json other.json -o bad --against out/predictions/uni 2>err || code=$?
