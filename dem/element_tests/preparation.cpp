@@ -204,7 +204,7 @@ void check(const PreparationOptions& o) {
   }
   for (const double nu : o.keep_unloading) {
     if (!(nu >= lowest && nu <= o.nu_max)) {
-      refuse(fmt::format("densities: {} is not on the unloading branch [nu_end, nu_max] = [{}, {}]", nu, lowest,
+      refuse(fmt::format("densities or keep: {} is not on the unloading branch [nu_end, nu_max] = [{}, {}]", nu, lowest,
                          o.nu_max));
     }
   }

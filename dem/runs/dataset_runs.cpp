@@ -96,9 +96,6 @@ void require_engines(const std::vector<PlannedTest>& tests, const fs::path& pare
   bool asked = false;
   for (const PlannedTest& test : tests) {
     if (!test.preparation.choice.is_lammps()) continue;
-    if (test.probes || test.frames > 0)
-      throw InvalidInput(fmt::format("{}{}: belong to the engine 'grainlaw'; remove them from what LAMMPS runs",
-                                     test.name.empty() ? "" : test.name + ": ", test.probes ? "probes" : "frames"));
     asked = asked || !is_finished(parent / "runs", run_of(test));
   }
   if (asked) find_lammps(execution.lammps, execution.launcher);

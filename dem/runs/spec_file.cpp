@@ -79,12 +79,15 @@ bool may_share_a_run(Role a, Role b) {
   return !fitted || a == Role::description || b == Role::description;
 }
 
-/// Paths that can be followed, names that differ, runs that end and are not both fitted and judged.
+/// What the engine has, paths that can be followed, names that differ, runs that end and are not both fitted and judged.
 void check_tests(const Spec& spec, const std::string& name) {
   std::set<std::string> names;
   std::vector<std::pair<Path, std::size_t>> runs;  // and whose test they are
   for (std::size_t i = 0; i < spec.tests.size(); ++i) {
     const TestRequest& test = spec.tests[i];
+    if (test.probes && spec.preparation.choice.is_lammps())
+      throw InvalidInput(fmt::format(
+          "{}: tests[{}].probes: belong to the engine 'grainlaw'; remove them from what LAMMPS runs", name, i));
     const std::vector<double> starts = test.mode == "ISO" ? std::vector<double>{0} : test.densities;
     for (const double nu : starts) {
       if (!names.insert(record_name(test, nu, 0)).second) {

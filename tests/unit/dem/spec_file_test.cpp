@@ -126,12 +126,15 @@ TEST(SpecFile, TestsBecomePathsAndNames) {
 
 TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
   EXPECT_EQ(spec_refusal(R"({"densities": [0.85]})"),
-            "s.json: densities: 0.85 is not on the unloading branch [nu_end, nu_max] = [0.66, 0.82]");
+            "s.json: densities or keep: 0.85 is not on the unloading branch [nu_end, nu_max] = [0.66, 0.82]");
   EXPECT_EQ(spec_refusal(R"({"nu_start": 0.7, "nu_max": 0.69})"), "s.json: nu_max: 0.69 must lie above nu_start = 0.7");
   EXPECT_NE(spec_refusal(R"({"nu_end": 0.63})").find("s.json: nu_end: "), std::string::npos);
   EXPECT_NE(spec_refusal(R"({"contact_viscosity": 1e6})").find("s.json: contact_viscosity: "), std::string::npos);
   EXPECT_NE(spec_refusal(R"({"strain_rate": 1e-6})").find("s.json: strain_rate: "),
             std::string::npos);  // S2: steps without end
+  EXPECT_NE(spec_refusal(R"({"engine": "lammps", "tests": [{"mode": "D2", "role": "calibration", "probes": {"every": 0.05}}]})")
+                .find("s.json: tests[0].probes: belong to the engine 'grainlaw'"),
+            std::string::npos);
   EXPECT_NE(spec_refusal(R"({"tests": [{"role": "calibration"}]})").find("s.json: tests[0]: misses what to do"),
             std::string::npos);
   EXPECT_NE(spec_refusal(R"({"tests": [{"mode": "ISO", "density": 0.7, "role": "calibration"}]})")
