@@ -105,9 +105,9 @@ Forecast forecast(const CalibrationInput& input, const fs::path& output, const E
   return fit;
 }
 
-Forecast forecast_of_pilot(const PrecisionTarget& target, const dem::Spec& frame, const fs::path& output,
-                           const Execution& execution) {
-  const dem::Spec pilot = rounds_of(planned_spec(frame, pilot_settings(frame), target.path));
+Forecast forecast_of_pilot(const PrecisionTarget& target, const dem::Spec& frame, const std::string& name,
+                           const fs::path& output, const Execution& execution) {
+  const dem::Spec pilot = rounds_of(planned_spec(frame, pilot_settings(frame, name), target.path));
   Forecast forecast = forecast_of(pilot, output, execution);
   forecast.notes.emplace_back("this is the pilot alone; what the plan takes follows from what it shows");
   return forecast;

@@ -40,8 +40,8 @@ static_assert(tells_every_member<Forecast>());
 Forecast forecast(const CalibrationInput& input, const std::filesystem::path& output, const Execution& execution);
 
 /// Of a calibration with a target: its pilot, which is always run. What the plan takes follows from what that shows.
-Forecast forecast_of_pilot(const PrecisionTarget& target, const dem::Spec& frame, const std::filesystem::path& output,
-                           const Execution& execution);
+Forecast forecast_of_pilot(const PrecisionTarget& target, const dem::Spec& frame, const std::string& name,
+                           const std::filesystem::path& output, const Execution& execution);
 
 /// What simulate() would do.
 Forecast forecast(const dem::TestFile& test, const std::filesystem::path& output, const Execution& execution);

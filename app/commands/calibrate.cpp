@@ -41,7 +41,7 @@ ExitCode calibrate_to_target(const CalibrateOptions& options, chain::Calibration
   const auto target =
       chain::read_target(*options.target_error, options.target_path, options.quantities, options.max_cost);
   if (options.dry_run) {
-    const auto pilot = chain::forecast_of_pilot(target, *input.spec, options.output, session);
+    const auto pilot = chain::forecast_of_pilot(target, *input.spec, options.spec.string(), options.output, session);
     return say_forecast(options.spec.string(), pilot, session);
   }
   const chain::TargetCalibration result =

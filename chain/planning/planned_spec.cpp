@@ -1,5 +1,7 @@
 #include "chain/planning/planned_spec.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,6 +9,7 @@
 #include "dem/runs/feasibility.hpp"
 #include "fit/data/options.hpp"
 #include "model/files/path_json.hpp"
+#include "model/vocabulary/error.hpp"
 
 namespace grainlaw::chain {
 namespace {
@@ -115,7 +118,12 @@ Work work_of(const dem::Spec& planned) {
   return work;
 }
 
-PlanSettings pilot_settings(const dem::Spec& frame) {
+PlanSettings pilot_settings(const dem::Spec& frame, const std::string& name) {
+  if (frame.preparation.drive.quasi_static_step > 0)
+    throw InvalidInput(fmt::format(
+        "{}: quasi_static_step: a plan chooses strain rate and time step, which minimised steps do not have; "
+        "leave it 0",
+        name));
   const double wanted = frame.preparation.drive.strain_rate, fast = rate_of(kPilotInertia, frame.preparation.packing);
   double rate = wanted;
   while (2 * rate <= fast) rate *= 2;

@@ -25,8 +25,9 @@ dem::Spec rounds_of(dem::Spec planned);
 /// Work of one packing in the rounds.
 Work work_of(const dem::Spec& planned);
 
-/// What the pilot has: small packings, driven fast, by a power of two faster than the frame's.
-PlanSettings pilot_settings(const dem::Spec& frame);
+/// What the pilot has: small packings, driven fast, by a power of two faster than the frame's. InvalidInput with `name`, the
+/// frame's file, where there is nothing to plan.
+PlanSettings pilot_settings(const dem::Spec& frame, const std::string& name);
 
 /// What a plan chooses from, the pilot's settings among it, from the `wanted_rate` on; the number of packings is the pilot's
 /// in all.

@@ -92,12 +92,7 @@ PrecisionTarget read_target(double error, const fs::path& path, const std::vecto
 TargetCalibration calibrate_for(const PrecisionTarget& target, const dem::Spec& spec, const std::string& name,
                                 const fit::CalibrationOptions& options, const fs::path& output,
                                 const Execution& execution) {
-  if (spec.preparation.drive.quasi_static_step > 0)
-    throw InvalidInput(fmt::format(
-        "{}: quasi_static_step: a plan chooses strain rate and time step, which minimised steps do not have; "
-        "leave it 0",
-        name));
-  const PlanSettings pilot = pilot_settings(spec);
+  const PlanSettings pilot = pilot_settings(spec, name);
   const Work pilot_work = work_of(planned_spec(spec, pilot, target.path));
   const auto at = [&](const PlanSettings& settings) { return planned_spec(spec, settings, target.path); };
   CalibrationResult last;
@@ -137,7 +132,7 @@ TargetCalibration calibrate_for(const PrecisionTarget& target, const dem::Spec& 
   result.planned = at(result.run.rounds.back().settings);
   if (rounds_of(result.planned).tests.size() < result.planned.tests.size()) {
     execution.watch.log("tests of other roles, of which the plan knew nothing");
-    calibrate({result.planned}, options, output, execution);
+    calibrate({result.planned}, by_packings, output, execution);  // errors as the plan judged them
   }
   result.document = plan_to_json(result.run, target, overrides(spec, result.planned), provenance(execution));
   write_json(output / "plan.json", result.document);

@@ -71,6 +71,8 @@ done
 
 # minimised steps have neither rate nor time step to plan with
 jq '.quasi_static_step = 0.001' spec.json >minimised.json
-code=0
-"$grainlaw" calibrate minimised.json -o bad --target-error 0.1 --for path.json >/dev/null 2>err || code=$?
-[[ $code == 2 && ! -e bad ]] && grep -q 'minimised.json: quasi_static_step' err || fail "minimised: exit $code, $(cat err)"
+for dry in '' --dry-run; do
+  code=0
+  "$grainlaw" calibrate minimised.json -o bad --target-error 0.1 --for path.json $dry >/dev/null 2>err || code=$?
+  [[ $code == 2 && ! -e bad ]] && grep -q 'minimised.json: quasi_static_step' err || fail "minimised $dry: exit $code, $(cat err)"
+done

@@ -78,7 +78,7 @@ TEST(PlannedSpec, DoesNotFitThePath) {
 }
 
 TEST(PlannedSpec, TheGridHoldsThePilotAndTheWantedRate) {
-  const PlanSettings pilot = pilot_settings(frame());
+  const PlanSettings pilot = pilot_settings(frame(), "spec.json");
   EXPECT_EQ(pilot.strain_rate, 138 * 8);
   const auto grid = plan_grid(pilot, 138);
   EXPECT_TRUE(std::any_of(grid.begin(), grid.end(), [&](const auto& s) { return same_packings(s, pilot); }));
@@ -86,7 +86,7 @@ TEST(PlannedSpec, TheGridHoldsThePilotAndTheWantedRate) {
   EXPECT_TRUE(std::all_of(grid.begin(), grid.end(), [](const auto& s) { return s.strain_rate >= 138; }));
   dem::Spec fast = frame();
   fast.preparation.drive.strain_rate = 3000;  // faster than a pilot would be
-  EXPECT_EQ(pilot_settings(fast).strain_rate, 3000);
+  EXPECT_EQ(pilot_settings(fast, "spec.json").strain_rate, 3000);
 }
 
 TEST(PlannedSpec, WorkFollowsFromTheSettings) {
