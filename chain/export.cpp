@@ -55,7 +55,7 @@ std::vector<StateSource> states_of(const fs::path& source) {
 /// Writes the files of one export and knows their names.
 class Export {
  public:
-  Export(ExportFormat format, const fs::path& output) : format_(format), output_(output) { make_output_folder(output); }
+  Export(ExportFormat format, const fs::path& output) : format_(format), output_(output) {}
 
   void add_state(const StateSource& source, bool alone) {
     const dem::State state = dem::read_state(source.file);
@@ -81,8 +81,7 @@ class Export {
         append(all + ".contacts.dump", lammps_contacts(snapshot));
         break;
       case ExportFormat::vtkhdf:
-        dem::write_vtkhdf(output_ / (name + ".vtkhdf"), snapshot);
-        done_.files.push_back(name + ".vtkhdf");
+        dem::write_vtkhdf(place_of(name + ".vtkhdf"), snapshot);
         break;
       case ExportFormat::npz:
         write_arrays(name + ".npz", snapshot);
@@ -118,8 +117,7 @@ class Export {
     for (NamedArray& column : columns) column.shape = {std::get<0>(column.values).size()};
     ++done_.series;
     if (format_ == ExportFormat::csv) return;
-    write_npz(output_ / (name + ".npz"), columns);
-    done_.files.push_back(name + ".npz");
+    write_npz(place_of(name + ".npz"), columns);
   }
 
   Exported finish() {
@@ -131,10 +129,14 @@ class Export {
   }
 
  private:
-  void write(const std::string& name, const std::string& text) {
-    write_durably(output_ / name, text);
+  /// Of a file that is about to be written: what is refused before leaves no folder.
+  fs::path place_of(const std::string& name) {
+    make_output_folder(output_);
     done_.files.push_back(name);
+    return output_ / name;
   }
+
+  void write(const std::string& name, const std::string& text) { write_durably(place_of(name), text); }
 
   void append(const std::string& name, const std::string& text) {
     const auto at =
@@ -162,7 +164,7 @@ class Export {
     }
     const std::size_t n = p.size(), m = s.contacts.size();
     const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> H = p.H;
-    write_npz(output_ / name, {{"time", {}, std::vector<double>{s.time}},
+    write_npz(place_of(name), {{"time", {}, std::vector<double>{s.time}},
                                {"cell", {3, 3}, std::vector<double>(H.data(), H.data() + 9)},
                                {"id", {n}, p.id},
                                {"x", {n, 3}, x},
@@ -172,12 +174,10 @@ class Export {
                                {"contact_branch", {m, 3}, branch},
                                {"contact_force", {m, 3}, force},
                                {"contact_overlap", {m}, overlap}});
-    done_.files.push_back(name);
   }
 
   void write_tables(const std::string& name, const dem::Snapshot& s) {
-    dem::write_spheres(output_ / (name + ".spheres.csv"), s.packing);
-    done_.files.push_back(name + ".spheres.csv");
+    dem::write_spheres(place_of(name + ".spheres.csv"), s.packing);
     std::string text = "id1,id2,branch_x[m],branch_y[m],branch_z[m],force_x[N],force_y[N],force_z[N],overlap[m]\n";
     for (const dem::SnapshotContact& c : s.contacts)
       text += fmt::format("{},{},{},{},{},{},{},{},{}\n", s.packing.id[c.i], s.packing.id[c.j], c.branch[0],

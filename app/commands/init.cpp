@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "app/commands/commands.hpp"
 #include "app/commands/options.hpp"
 #include "model/files/output.hpp"
@@ -42,11 +40,19 @@ std::string localised(std::string text) {
   return text.erase(begin, text.find('\n', at) + 1 - begin);
 }
 
-void write_new(const fs::path& file, const std::string& text) {
-  if (file != "-" && fs::exists(file))
-    throw InvalidInput(
-        fmt::format("{}: is there already and was left alone; give another name with -o", file.string()));
-  write_as_named(file, text);
+/// Of a kind: each file's place below `output`, a file or of a data set a folder, and its text.
+std::vector<std::pair<fs::path, std::string>> files_of(Starter kind, const fs::path& output) {
+  const bool dataset = kind == Starter::dataset;
+  const std::string name = to_string(kind) + (dataset ? "/" : ".json");
+  std::vector<std::pair<fs::path, std::string>> files;
+  for (const auto& [file, text] : starters::kFiles) {
+    if (!file.starts_with(name)) continue;
+    files.emplace_back(dataset ? output / file.substr(name.size()) : output, localised(text));
+    if (output != "-" && fs::exists(files.back().first))
+      throw InvalidInput(fmt::format("{}: is there already and was left alone; give another name with -o",
+                                     files.back().first.string()));
+  }
+  return files;
 }
 
 ExitCode init(const InitOptions& options) {
@@ -55,15 +61,9 @@ ExitCode init(const InitOptions& options) {
   const fs::path output = options.output.empty() ? fs::path(name) : options.output;
   const bool to_output = output == "-";
   if (to_output && dataset) throw InvalidInput("init: a data set is a folder; name one with -o");
-  if (dataset && fs::exists(output / "dataset.json"))
-    throw InvalidInput(fmt::format("{}: holds a data set already; give another folder with -o", output.string()));
+  const auto files = files_of(options.kind, output);
   if (dataset) make_output_folder(output);
-  for (const auto& [file, text] : starters::kFiles) {
-    if (dataset && file.starts_with("dataset/"))
-      write_new(output / file.substr(8), localised(text));
-    else if (!dataset && file == name)
-      write_new(output, localised(text));
-  }
+  for (const auto& [file, text] : files) write_as_named(file, text);
   if (to_output) return ExitCode::ok;
   const char* next = options.kind == Starter::spec   ? "grainlaw calibrate {} -o out"
                      : options.kind == Starter::test ? "grainlaw simulate {} -o out"
@@ -78,7 +78,7 @@ ExitCode init(const InitOptions& options) {
 
 Task declare_init(CLI::App& command) {
   const auto options = std::make_shared<InitOptions>();
-  add_choice<Starter>(command, "KIND", options->kind, "of the starter: spec, test, path or dataset")->required();
+  add_choice<Starter>(command, "KIND", options->kind, "of the starter")->required();
   add_value(command, "-o,--output", options->output, "FILE",
             "file, - for standard output, or folder of a data set (default: named after KIND)");
   return [options](Session&) { return init(*options); };

@@ -192,6 +192,13 @@ fi
 "$grainlaw" export set-dump --format npz -o set-npz >text
 "$grainlaw" export set-dump --format csv -o set-csv --json | jq -e '.series == 1 and .files == ["series.csv"]' >/dev/null || fail "data set as csv"
 "$python" -c 'import numpy; assert numpy.load("set-npz/dump.npz")["P_star"].shape == (21,)' || fail "data set as npz"
+mkdir unlike  # a second series without the last column: one table cannot hold both, and no folder is left
+cp set-dump/dump.csv unlike/
+sed 's/,[^,]*$//' set-dump/dump.csv >unlike/dump2.csv
+jq 'del(.digest) | .tests += [.tests[0] | .name = "dump2" | del(.sha256)]' set-dump/dataset.json >unlike/dataset.json
+code=0
+"$grainlaw" export unlike --format csv -o wrong 2>err || code=$?
+[[ $code == 2 && ! -e wrong ]] && grep -q 'other columns' err || fail "$code $(ls wrong) $(cat err)"
 code=0
 "$grainlaw" export set-dump --format vtp -o wrong 2>err || code=$?
 [[ $code == 2 && ! -e wrong ]] && grep -q 'holds no states' err || fail "$(cat err)"

@@ -10,6 +10,10 @@ grep -q 'next: grainlaw check dataset' said || fail "$(cat said)"
 code=0
 "$grainlaw" init spec 2>err || code=$?
 [[ $code == 2 ]] && grep -q 'spec.json: is there already' err || fail "overwrites: $code $(cat err)"
+mkdir partial; echo mine >partial/$(ls dataset | grep csv | tail -1); before=$(ls partial)
+code=0
+"$grainlaw" init dataset -o partial 2>err || code=$?
+[[ $code == 2 && $(ls partial) == "$before" ]] && grep -q 'is there already' err || fail "half a data set: $code $(ls partial) $(cat err)"
 "$grainlaw" init path -o other.json >/dev/null && cmp -s path.json other.json || fail "-o"
 for file in spec.json test.json path.json; do grep -q '^ *//' $file || fail "no comments in $file"; done
 jq -e '.comment | length > 5' dataset/dataset.json >/dev/null || fail "no comment of the data set"
