@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/full.sh [--plan | --again] [STAGE...]: every suite and acceptance script, stage by stage; or the named stages alone.
+# tests/full.sh [--plan | --again] [STAGE...]: the suites and acceptance scripts of the stages below, or of the named ones alone.
 #   --plan   only says what would run and how long that takes
 #   --again  runs stages, too, that have passed with these very sources
 # A stage that fails does not stop the others. Stopped and called again it goes on with what has not passed yet.

@@ -53,6 +53,7 @@ OptionText text_of(const CLI::Option& option) {
   if (option.get_type_size() != 0) text.value = type.front();
   if (text.value.find('|') != std::string::npos) text.choices = split(text.value, '|');
   std::vector<std::string> remarks(type.begin() + 1, type.end());
+  if (text.positional && !text.choices.empty()) remarks.push_back(fmt::format("{}", fmt::join(text.choices, ", ")));
   if (!option.get_default_str().empty()) remarks.push_back("default " + option.get_default_str());
   if (!remarks.empty()) text.description += fmt::format(" ({})", fmt::join(remarks, "; "));
   return text;

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # examples/paper/run.sh [OUT]: all data of the paper at its own size, with five packings: preparation, element tests, law,
 # new packings for the uniaxial predictions, report. Installs what is missing, builds Release, writes to OUT
-# (./grainlaw-paper). Three quarters of an hour to an hour and a half on 2 cores; finished simulations in OUT are reused,
+# (./grainlaw-paper). Half an hour to an hour on 2 cores; finished simulations in OUT are reused,
 # interrupted ones go on.
 set -euo pipefail
 
