@@ -118,7 +118,8 @@ Task declare_calibrate(CLI::App& command) {
                    "times as long as the fit");
   add_value(command, "--prior", options->prior, "FILE",
             "prior.json of study prior, by which the errors of few packings are moderated, or none; default: "
-            "the built-in one");
+            "the built-in one")
+      ->excludes(target);
   return [options](Session& session) { return calibrate(*options, session); };
 }
 

@@ -62,7 +62,8 @@ jq -e '.rounds[-1] | .model == "reduced" and .quantities[0].discrepancy_min > 0.
 
 echo '{"initial": {"nu": 0.72}, "segments": [{"mode": "ISO", "extent": {"target_nu": 0.8}}]}' >iso.json
 for bad in '--target-error 0.1' '--for path.json' '--target-error 0 --for path.json' '--target-error 0.1 --for path.json --dataset loose' \
-  '--target-error 0.1 --for path.json --quantity C_star' '--target-error 0.1 --for iso.json --quantity s_par' '--quantity P_star'; do
+  '--target-error 0.1 --for path.json --quantity C_star' '--target-error 0.1 --for iso.json --quantity s_par' '--quantity P_star' \
+  '--target-error 0.1 --for path.json --prior none'; do
   code=0
   # shellcheck disable=SC2086 # several words
   "$grainlaw" calibrate spec.json -o bad $bad >/dev/null 2>err || code=$?
