@@ -46,16 +46,35 @@ run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
 }
 
 # --- What is known of a stage: build/full/STAGE.result, DIGEST VERDICT SECONDS DATE COUNTS..., then what failed -----------
-kind_of() { # stage: whether it builds and tests alone, so that scripts that judge may change; CI runs the tests of those
-  case $1 in
-    long | clang | sources | assertions | asan-ubsan | tsan | valgrind | fuzz) echo programs ;;
-    *) echo all ;;
-  esac
+judges_of() { # script of tests/acceptance: it, what all of them begin with, and what these call, as " a.sh b.sh "
+  local seen=" $1 setup.sh figures.sh " queue=("$1" setup.sh figures.sh) name
+  while ((${#queue[@]} > 0)); do
+    for name in $(grep -ohE '[a-z_]+\.sh' "tests/acceptance/${queue[0]}" 2>/dev/null | sort -u); do
+      if [[ -e tests/acceptance/$name && $seen != *" $name "* ]]; then seen+="$name " queue+=("$name"); fi
+    done
+    queue=("${queue[@]:1}")
+  done
+  echo "$seen"
 }
 
-digest_of_sources() ( # programs or all: committed or not; without the pages, whose tests are part of every CI run
-  left_out=('*.md')
-  if [[ $1 == programs ]]; then left_out+=(tests/full.sh tests/coverage.sh 'tests/acceptance/*' 'tests/mutants/*'); fi
+left_out_of() { # stage: patterns of files that do not matter to it. Pages do to none: their tests are part of every CI run
+  local judges other
+  echo '*.md'
+  case $1 in
+    release | all) return ;;
+    long | clang | sources | assertions | asan-ubsan | tsan | valgrind | fuzz)  # build and test alone
+      printf '%s\n' tests/full.sh tests/coverage.sh 'tests/acceptance/*' 'tests/mutants/*'
+      return ;;
+    faults | kills | mutants) judges=$(judges_of trust.sh) ;;
+    *) judges=$(judges_of "$1.sh") ;;
+  esac
+  for other in tests/acceptance/*.sh; do
+    if [[ $judges != *" ${other##*/} "* ]]; then echo "$other"; fi
+  done
+}
+
+digest_of_sources() ( # stage, or all: of what matters to it, committed or not
+  mapfile -t left_out < <(left_out_of "$1")
   if git rev-parse --git-dir >/dev/null 2>&1; then
     export GIT_INDEX_FILE=$folder/index.$BASHPID  # another call may ask at the same time
     trap 'rm -f "$GIT_INDEX_FILE"' EXIT
@@ -73,7 +92,7 @@ known() { # stage field
   [[ -s $folder/$1.result ]] && head -1 "$folder/$1.result" | cut -d ' ' -f "$2"
 }
 
-up_to_date() { [[ $(known "$1" 1) == "${digest[$(kind_of "$1")]}" ]]; }
+up_to_date() { [[ $(known "$1" 1) == "${digest[$1]}" ]]; }
 
 passed() { up_to_date "$1" && [[ $(known "$1" 2) == passed ]]; }
 
@@ -199,7 +218,7 @@ done
 if ((${#wanted[@]} == 0)); then wanted=("${names[@]}"); fi
 mkdir -p $folder
 declare -A digest
-for kind in programs all; do digest[$kind]=$(digest_of_sources $kind); done
+for stage in "${names[@]}" all; do digest[$stage]=$(digest_of_sources "$stage"); done
 plan >&2
 if [[ $plan_only == yes ]]; then exit; fi
 ./install-packages.sh --full >&2
@@ -208,7 +227,7 @@ pid=
 trap '[[ -z $pid ]] || kill -- "-$pid" 2>/dev/null; summary >$folder/summary.md; exit 130' INT TERM HUP
 status=0
 for ((k = 0; k < ${#wanted[@]}; k++)); do
-  stage=${wanted[k]} kind=$(kind_of "${wanted[k]}")
+  stage=${wanted[k]}
   if [[ $again == no ]] && passed "$stage"; then continue; fi
   begin=$SECONDS code=0
   echo "[$((k + 1))/${#wanted[@]}] $stage, begun at $(date +%H:%M), log $folder/$stage.log" >&2
@@ -221,9 +240,9 @@ for ((k = 0; k < ${#wanted[@]}; k++)); do
   pid=
   verdict=failed
   case $code in 0) verdict=passed ;; 77) verdict=left_out ;; esac
-  if [[ $(digest_of_sources "$kind") != "${digest[$kind]}" ]]; then verdict=sources_changed; fi
+  if [[ $(digest_of_sources "$stage") != "${digest[$stage]}" ]]; then verdict=sources_changed; fi
   {
-    echo "${digest[$kind]} $verdict $((SECONDS - begin)) $(date +%F) $(counts "$stage")"
+    echo "${digest[$stage]} $verdict $((SECONDS - begin)) $(date +%F) $(counts "$stage")"
     failures "$stage"
   } >"$folder/$stage.result"
   if [[ $verdict == failed || $verdict == sources_changed ]]; then status=1; fi

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # full_resumes.sh: tests/full.sh on a tree of stages that only count how often they run: what has passed is not run again,
-# what failed is, and changed sources are run anew; scripts that judge are no sources of what only builds and tests.
+# what failed is, and changed sources are run anew; scripts that judge are no sources of what only builds and tests, nor of
+# stages whose own script does not call them.
 set -euo pipefail
 script=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../full.sh")
 tree=$(mktemp -d)
@@ -55,6 +56,12 @@ for git in yes no; do
   echo newer >>source
   expect 0 "page valgrind" page valgrind
   echo '# a word' >>tests/acceptance/setup.sh
+  expect 0 "page" page valgrind
+  echo '# a word' >>tests/acceptance/law.sh
+  expect 0 "" page valgrind
+  echo '# calls door.sh' | tee -a tests/acceptance/page.sh >tests/acceptance/door.sh
+  expect 0 "page" page valgrind
+  echo '# a word' >>tests/acceptance/door.sh
   expect 0 "page" page valgrind
 done
 echo 'full_resumes: ok'
