@@ -17,6 +17,7 @@ captions=(
   "D1.closed|Two damped contacts that never open (r = 1 mm, gamma = 1 kg/s) over three periods: no jump, so order 2 with damping too."
   "D2.trap|The trap: with t_c/dt whole, the errors at both ends of a contact cancel (phases 0.1 to 0.9), and a study would report order 2 where it is 1."
   "D9.order|Residual of the energy balance over the dissipation of eight shaken, jammed packings (N = 100, nu = 0.75) compressed by 1 %: order 2."
+  "precision|The force of a sphere over the mean contact force, and P* of a packing, in mixed and in double precision: errors against plain loops."
   "O1.cvode|Eqs. 17 and 18 by CVODE against the closed form: error against the tolerance asked for."
   "O5.cvode|The same for Eq. 16 with a manufactured solution."
 )
