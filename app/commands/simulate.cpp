@@ -24,9 +24,6 @@ ExitCode simulate(const SimulateOptions& options, Session& session) {
   if (options.frames && test.start == dem::Start::preparation)
     throw InvalidInput(fmt::format("{}: --frames: a preparation has no frames; use 'keep'", options.test.string()));
   test.frames = options.frames.value_or(test.frames);
-  if (test.frames > 0 && test.preparation.choice.is_lammps())
-    throw InvalidInput(
-        fmt::format("{}: --frames: belong to the engine 'grainlaw'; leave them out", options.test.string()));
   if (options.dry_run)
     return say_forecast(options.test.string(), chain::forecast(test, options.output, session), session);
   const dem::SimulationResult simulation = dem::simulate(test, options.output, session);

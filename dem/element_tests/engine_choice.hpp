@@ -26,8 +26,9 @@ constexpr auto fields_of(std::type_identity<EngineChoice>) {
 }
 static_assert(tells_every_member<EngineChoice>());
 
-/// Keys of SPEC and TEST that LAMMPS does not read, as it has its own: how our engine computes.
-inline constexpr std::array kOurEngineAlone{"skin", "precision", "portable_bits", "quasi_static_step", "transport"};
+/// Keys of SPEC and TEST that LAMMPS does not read: how our engine computes, and what it alone shows along a path.
+inline constexpr std::array kOurEngineAlone{"skin",      "precision", "portable_bits", "quasi_static_step",
+                                            "transport", "probes",    "frames"};
 
 /// Throws InvalidInput "KEY: ..." for what the chosen engine does not have.
 void check(const EngineChoice& choice, const EngineOptions& engine, const DriveOptions& drive);

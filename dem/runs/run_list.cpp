@@ -135,6 +135,9 @@ std::vector<PlannedRun> runs_of(const std::vector<PlannedTest>& tests) {
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const PlannedTest& test = tests[i];
     if (test.branch_of_preparation) continue;
+    if (test.preparation.choice.is_lammps() && (test.probes || test.frames > 0))
+      throw InvalidInput(fmt::format("{}: belongs to the engine 'grainlaw'; remove it from what LAMMPS runs",
+                                     test.probes ? "probes" : "frames"));
     const std::string key = test_key(test);
     if (!index.try_emplace(key, runs.size()).second) continue;
     runs.push_back({key, test.name, &test, false, {}});

@@ -25,7 +25,8 @@ struct PlannedRun {
   std::optional<std::size_t> after;  ///< index of the preparation that a test starts from
 };
 
-/// Preparations first, then the tests in order. `tests` must outlive the list.
+/// Preparations first, then the tests in order. `tests` must outlive the list. InvalidInput where LAMMPS is to show frames or
+/// probes.
 std::vector<PlannedRun> runs_of(const std::vector<PlannedTest>& tests);
 
 /// Key of the run whose series a test is.

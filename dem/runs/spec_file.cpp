@@ -79,15 +79,12 @@ bool may_share_a_run(Role a, Role b) {
   return !fitted || a == Role::description || b == Role::description;
 }
 
-/// What the engine has, paths that can be followed, names that differ, runs that end and are not both fitted and judged.
+/// Paths that can be followed, names that differ, runs that end and are not both fitted and judged.
 void check_tests(const Spec& spec, const std::string& name) {
   std::set<std::string> names;
   std::vector<std::pair<Path, std::size_t>> runs;  // and whose test they are
   for (std::size_t i = 0; i < spec.tests.size(); ++i) {
     const TestRequest& test = spec.tests[i];
-    if (test.probes && spec.preparation.choice.is_lammps())
-      throw InvalidInput(fmt::format(
-          "{}: tests[{}].probes: belong to the engine 'grainlaw'; remove them from what LAMMPS runs", name, i));
     const std::vector<double> starts = test.mode == "ISO" ? std::vector<double>{0} : test.densities;
     for (const double nu : starts) {
       if (!names.insert(record_name(test, nu, 0)).second) {
@@ -191,7 +188,9 @@ Spec spec_from_json(const Json& document, const std::string& name) {
   std::sort(spec.keep.begin(), spec.keep.end());
   if (document.contains("tests")) {
     for (std::size_t i = 0; i < document["tests"].size(); ++i) {
-      spec.tests.push_back(test_from_json(document["tests"][i], spec.densities, name, fmt::format("tests[{}]", i)));
+      const std::string place = fmt::format("tests[{}]", i);
+      refuse_keys_of_other_engine(document["tests"][i], spec.preparation.choice, name + ": " + place);
+      spec.tests.push_back(test_from_json(document["tests"][i], spec.densities, name, place));
     }
   } else {
     spec.tests = default_tests(spec.densities);
@@ -210,8 +209,7 @@ void refuse_keys_of_other_engine(const Json& document, const EngineChoice& choic
   if (!choice.is_lammps()) return;
   for (const char* key : kOurEngineAlone) {
     if (document.contains(key))
-      throw InvalidInput(
-          fmt::format("{}: {}: belongs to the engine 'grainlaw'; remove it, LAMMPS has its own", name, key));
+      throw InvalidInput(fmt::format("{}: {}: belongs to the engine 'grainlaw'; remove it", name, key));
   }
 }
 

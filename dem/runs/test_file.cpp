@@ -156,9 +156,6 @@ TestFile test_from_document(const Json& document, const std::filesystem::path& f
   if (test.given) path["initial"]["nu"] = volume_fraction(test.given->packing);
   test.path = path_from_json(path, name, "", false);
   check_path(test.path, preparation, name);
-  if (preparation.choice.is_lammps() && (test.probes || test.frames > 0))
-    throw InvalidInput(
-        fmt::format("{}: {}: belong to the engine 'grainlaw'; remove them", name, test.probes ? "probes" : "frames"));
   return test;
 }
 

@@ -316,7 +316,7 @@ TEST_F(PathFiles, TestsStartWhereTheySay) {
             std::string::npos);
   const std::string lammps = R"({"state": "a.state", "engine": "lammps", "normal_force": "hertz", )";
   EXPECT_EQ(dem::read_test(put("t.json", lammps + uni + "}")).given->contacts.normal_force, NormalForce::hertz);
-  EXPECT_NE(test_refusal(lammps + R"("frames": 3, )" + uni + "}").find("frames: belong to the engine 'grainlaw'"),
+  EXPECT_NE(test_refusal(lammps + R"("frames": 3, )" + uni + "}").find("frames: belongs to the engine 'grainlaw'"),
             std::string::npos);
 }
 

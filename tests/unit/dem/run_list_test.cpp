@@ -20,6 +20,20 @@ std::vector<PlannedTest> small_plan() {
                      "s.json"));
 }
 
+// However a test came to ask for them: a file that is read is refused before, by name.
+TEST(RunList, HasNoFramesAndNoProbesOfLammps) {
+  auto planned = small_plan();
+  for (PlannedTest& test : planned) test.preparation.choice = {.engine = EngineName::lammps};
+  EXPECT_EQ(runs_of(planned).size(), 6u);
+  planned[1].frames = 3;
+  EXPECT_NE(testing::refusal([&] { runs_of(planned); }).find("frames: belongs to the engine 'grainlaw'"),
+            std::string::npos);
+  planned[1].frames = 0;
+  planned[1].probes.emplace();
+  EXPECT_NE(testing::refusal([&] { runs_of(planned); }).find("probes: belongs to the engine 'grainlaw'"),
+            std::string::npos);
+}
+
 class RunLists : public testing::TemporaryFolder {};
 
 // Two that work on the same runs at once share them: each run is made once.

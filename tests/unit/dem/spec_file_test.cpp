@@ -133,7 +133,7 @@ TEST(SpecFile, RefusesWhatNoSchemaCanSay) {
   EXPECT_NE(spec_refusal(R"({"strain_rate": 1e-6})").find("s.json: strain_rate: "),
             std::string::npos);  // S2: steps without end
   EXPECT_NE(spec_refusal(R"({"engine": "lammps", "tests": [{"mode": "D2", "role": "calibration", "probes": {"every": 0.05}}]})")
-                .find("s.json: tests[0].probes: belong to the engine 'grainlaw'"),
+                .find("s.json: tests[0]: probes: belongs to the engine 'grainlaw'"),
             std::string::npos);
   EXPECT_NE(spec_refusal(R"({"tests": [{"role": "calibration"}]})").find("s.json: tests[0]: misses what to do"),
             std::string::npos);
