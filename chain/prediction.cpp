@@ -27,8 +27,6 @@ namespace fs = std::filesystem;
 
 using predict::Initial;
 
-constexpr int kFreePoints = 200;  // of a curve that no DEM run dictates
-
 /// The rung that is asked for, else those that are calibrated; where there is none, the first, which is refused by what it lacks.
 std::vector<Rung> rungs_of(const PredictionInput& input) {
   const bool decides = law_decides(input.path.path);
@@ -69,9 +67,9 @@ struct Law {
   /// From the law's own start.
   predict::Prediction at_equal_steps(Rung model) const {
     const LawState<double> start = predict::state_from_law(calibrated.parameters, path.nu);
-    if (!law_decides(path)) return along(model, Initial::law, start, predict::uniform_points(segments, kFreePoints));
-    return predict::predict_by_law(model, calibrated.parameters, calibrated.coupling, path, start, kFreePoints,
-                                   predict::Tolerances{}, calibrated.range, control);
+    if (!law_decides(path)) return along(model, Initial::law, start, predict::uniform_points(segments));
+    return predict::predict_by_law(model, calibrated.parameters, calibrated.coupling, path, start,
+                                   predict::kCurvePoints, predict::Tolerances{}, calibrated.range, control);
   }
 };
 

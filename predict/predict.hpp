@@ -28,8 +28,10 @@ struct OutputPoint {
 };
 GRAINLAW_FIELDS(OutputPoint, segment, e);
 
+inline constexpr int kCurvePoints = 200;  ///< intervals of each segment of a curve that no DEM run dictates
+
 /// `per_segment` equal intervals on each segment, ends included.
-std::vector<OutputPoint> uniform_points(const std::vector<StraightSegment>& segments, int per_segment);
+std::vector<OutputPoint> uniform_points(const std::vector<StraightSegment>& segments, int per_segment = kCurvePoints);
 
 /// The points at which the rows of a test lie on resolve(test.path), by projection of their strain. Throws InvalidInput
 /// naming a row that is off the path by more than 1e-9 of strain or 1e-6 of volume fraction, that runs back in time,

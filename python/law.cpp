@@ -138,8 +138,6 @@ Curve predicted_path(const Law& self, const StrainPath& path, Rung rung, int poi
   return carried_out(wanted);
 }
 
-constexpr std::int64_t kPointsOfSegment = 200;  // as in files of a prediction
-
 Curve predicted(const std::shared_ptr<Law>& self, py::handle path, py::handle model, py::handle points, bool bands,
                 py::handle start) {
   const Rung rung = rung_of(*self, model);
@@ -151,7 +149,7 @@ Curve predicted(const std::shared_ptr<Law>& self, py::handle path, py::handle mo
   if (initial == Initial::measured)
     throw InvalidInput("start: 'measured' is that of a Test; give one in place of the path");
   const std::shared_ptr<const StrainPath> along = path_of(path);
-  const auto each = points.is_none() ? kPointsOfSegment : whole_number(points, "points", 1, 1'000'000);
+  const auto each = points.is_none() ? predict::kCurvePoints : whole_number(points, "points", 1, 1'000'000);
   Curve curve = predicted_path(*self, *along, rung, static_cast<int>(each), bands);
   curve.law = self;
   curve.path = along;
