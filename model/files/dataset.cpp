@@ -73,6 +73,13 @@ DatasetTest read_test(const Json& object, const fs::path& folder, const std::str
   return test;
 }
 
+/// A path without the names of its directions.
+Json driving_of(const Path& path) {
+  Json driving = path_to_json(path);
+  for (Json& segment : driving["segments"]) segment.erase("mode");
+  return driving;
+}
+
 }  // namespace
 
 Dataset read_dataset(const fs::path& folder) {
@@ -220,13 +227,6 @@ void require_judges(const Dataset& runs, const Dataset& fitted, const std::strin
                       name, test.record.name, to_string(test.record.role), other.record.name));
     }
   }
-}
-
-/// A path without the names of its directions.
-static Json driving_of(const Path& path) {
-  Json driving = path_to_json(path);
-  for (Json& segment : driving["segments"]) segment.erase("mode");
-  return driving;
 }
 
 void require_runs_of(const Path& path, const Dataset& dataset, const std::string& name) {
