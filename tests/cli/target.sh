@@ -29,6 +29,8 @@ jq -e '.rounds[0].quantities[0] | .discrepancy >= .discrepancy_min and .discrepa
 # held-out tests came last, on the packings of the plan
 [[ $(validation_tests loose/dataset) == '4 UNI 4 rehearsal' ]] || fail "validation tests: $(validation_tests loose/dataset)"
 grep -A1 'rung:' log | grep -q 'tests of other roles' || fail "$(cat log)"
+# fitted as the plan was judged: errors of few packings are not moderated by a prior
+jq -e '.moderation | .parameters == 0 and .ratio == null' loose/calibration.json >/dev/null || fail "$(jq -c .moderation loose/calibration.json)"
 
 # a smaller one: the cheapest of the candidates that reach it; what is finished is found again
 error=$(jq '.rounds[0].error * 0.85' loose/plan.json)
