@@ -23,7 +23,7 @@ std::vector<PlannedTest> small_plan() {
 // However a test came to ask for them: a file that is read is refused before, by name.
 TEST(RunList, HasNoFramesAndNoProbesOfLammps) {
   auto planned = small_plan();
-  for (PlannedTest& test : planned) test.preparation.choice = {.engine = EngineName::lammps};
+  for (PlannedTest& test : planned) test.preparation.choice.engine = EngineName::lammps;
   EXPECT_EQ(runs_of(planned).size(), 6u);
   planned[1].frames = 3;
   EXPECT_NE(testing::refusal([&] { runs_of(planned); }).find("frames: belongs to the engine 'grainlaw'"),
