@@ -27,7 +27,7 @@ struct Scene {
   Figure figure() const { return prediction_figure(input, 0); }
 };
 
-const Series& labelled(const Panel& panel, const std::string& words) {
+Series labelled(const Panel& panel, const std::string& words) {
   const auto found = std::find_if(panel.series.begin(), panel.series.end(), [&](const Series& series) {
     return to_plain(series.label).find(words) != std::string::npos;
   });
@@ -152,7 +152,7 @@ TEST(ReportPrediction, PartsWithoutShearHaveALengthToo) {
     row.nu = 0.85;
     drawn.prediction.rows.push_back(row);
   }
-  const Series& both = labelled(mixed.figure().panels[1], "recommended");
+  const Series both = labelled(mixed.figure().panels[1], "recommended");
   EXPECT_GT(both.x.back() - both.x[both.x.size() - 2], 0.01) << "the length of the volume's path";
 }
 
