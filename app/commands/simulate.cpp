@@ -21,8 +21,11 @@ struct SimulateOptions {
 
 ExitCode simulate(const SimulateOptions& options, Session& session) {
   dem::TestFile test = dem::read_test(options.test);
-  if (options.frames && test.start == dem::Start::preparation)
-    throw InvalidInput(fmt::format("{}: --frames: a preparation has no frames; use 'keep'", options.test.string()));
+  const bool lammps = test.preparation.choice.is_lammps();
+  if (options.frames && (lammps || test.start == dem::Start::preparation))
+    throw InvalidInput(fmt::format("{}: --frames: {}", options.test.string(),
+                                   lammps ? "belongs to the engine 'grainlaw'; remove it from what LAMMPS runs"
+                                          : "a preparation has no frames; use 'keep'"));
   test.frames = options.frames.value_or(test.frames);
   if (options.dry_run)
     return say_forecast(options.test.string(), chain::forecast(test, options.output, session), session);

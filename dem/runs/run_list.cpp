@@ -136,8 +136,8 @@ std::vector<PlannedRun> runs_of(const std::vector<PlannedTest>& tests) {
     const PlannedTest& test = tests[i];
     if (test.branch_of_preparation) continue;
     if (test.preparation.choice.is_lammps() && (test.probes || test.frames > 0))
-      throw InvalidInput(fmt::format("{}: belongs to the engine 'grainlaw'; remove it from what LAMMPS runs",
-                                     test.probes ? "probes" : "frames"));
+      throw InvalidInput(fmt::format("test '{}': {}: belongs to the engine 'grainlaw'; remove it from what LAMMPS runs",
+                                     test.name, test.probes ? "probes" : "frames"));
     const std::string key = test_key(test);
     if (!index.try_emplace(key, runs.size()).second) continue;
     runs.push_back({key, test.name, &test, false, {}});

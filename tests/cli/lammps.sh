@@ -28,7 +28,7 @@ for key in '"frames": 3' '"probes": {"every": 0.1}'; do
   refused ours_alone.json "belongs to the engine 'grainlaw'"
 done
 echo "{$small, \"engine\": \"lammps\", \"initial\": {\"nu\": 0.74}, \"segments\": [{\"mode\": \"D2\", \"extent\": {\"eps_dev\": 0.1}}]}" >ours_alone.json
-refused ours_alone.json "frames: belongs to the engine 'grainlaw'" --frames 3 --dry-run
+refused ours_alone.json "ours_alone.json: --frames: belongs to the engine 'grainlaw'" --frames 3 --dry-run
 echo "{$small, \"engine\": \"lammps\"}" >lammps.json
 refused lammps.json "no executable './nowhere/lmp'" --lammps ./nowhere/lmp
 refused lammps.json "does not say that it is LAMMPS" --lammps true

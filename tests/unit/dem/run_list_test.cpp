@@ -26,8 +26,9 @@ TEST(RunList, HasNoFramesAndNoProbesOfLammps) {
   for (PlannedTest& test : planned) test.preparation.choice.engine = EngineName::lammps;
   EXPECT_EQ(runs_of(planned).size(), 6u);
   planned[1].frames = 3;
-  EXPECT_NE(testing::refusal([&] { runs_of(planned); }).find("frames: belongs to the engine 'grainlaw'"),
-            std::string::npos);
+  EXPECT_EQ(
+      testing::refusal([&] { runs_of(planned); }),
+      "test '" + planned[1].name + "': frames: belongs to the engine 'grainlaw'; remove it from what LAMMPS runs");
   planned[1].frames = 0;
   planned[1].probes.emplace();
   EXPECT_NE(testing::refusal([&] { runs_of(planned); }).find("probes: belongs to the engine 'grainlaw'"),
