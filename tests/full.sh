@@ -26,7 +26,7 @@ build() { # preset option...
 
 run() { # stage; what it says of itself goes to its log. Exit code 77: left out.
   case $1 in
-    clang | sources | fuzz) command -v clang++-14 || return 77 ;;
+    clang | sources | asan-ubsan | fuzz) command -v clang++-14 || return 77 ;;
     valgrind) command -v valgrind || return 77 ;;
   esac
   case $1 in
