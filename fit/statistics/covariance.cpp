@@ -154,7 +154,7 @@ ClusterCovariance cluster_covariance(const Eigen::MatrixXd& jacobian, const Eige
   Eigen::VectorXd carried_by_one = Eigen::VectorXd::Zero(L.rows());
   for (const auto& [id, rows] : rows_of) {
     const Packing& packing = packings[id] = packing_of(J(rows, Eigen::all) * L, misfit(rows));
-    if (packing.alone.cols() > 0) carried_by_one += (B * packing.alone).rowwise().squaredNorm();
+    carried_by_one += (B * packing.alone).rowwise().squaredNorm();
   }
   for (Eigen::Index k = 0; k < L.rows(); ++k) {
     const Eigen::Index whole = columns[static_cast<std::size_t>(k)];
