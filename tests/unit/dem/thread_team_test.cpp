@@ -85,7 +85,7 @@ TEST(ThreadTeam, RefusesNoThreads) {
 
 // In a process of its own whose address space ends before the last stack.
 TEST(ThreadTeam, SaysWhenThreadsCannotBeStarted) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef GRAINLAW_SANITIZED
   GTEST_SKIP() << "sanitizers need the address space themselves";
 #endif
   const auto start_too_many = [] {
